@@ -1,4 +1,5 @@
-// What pictures' further layers are called, in options and in files.
+// Names of a picture's additional layers (AOVs), in options and in files. The one table for the
+// command line, the Python module and the film.
 #pragma once
 
 #include <optional>
@@ -13,12 +14,12 @@ namespace troffer {
 struct AovRow {
   Aov aov;
   std::string_view name;
-  std::vector<std::string_view> channels;  // as named in files
+  std::vector<std::string_view> channels;  // names in files
 };
 
 const std::vector<AovRow>& aov_rows();
 const AovRow& row_of(Aov aov);
 std::optional<Aov> find_aov(std::string_view name);
-std::string aov_names();  // with commas between them
+std::string aov_names();  // all names, separated by commas
 
 }  // namespace troffer

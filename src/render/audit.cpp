@@ -11,18 +11,19 @@ namespace troffer {
 
 namespace {
 
-// Paths of a point that is audited, for each of its samples; and so many times as many at most
-// where all points are measured by paths.
+// Paths per sample of an audited point, and the largest further factor if all points are measured
+// by paths.
 constexpr int paths_of_sample = 4;
 constexpr double most_times_audit = 16;
-constexpr double much_more = 2;  // than another error
-// Where an audit finds what it would by chance in one list of ten, so many times as many paths look
-// again: few paths may all miss a bright caustic that cells have met, and then seem to be certain.
+constexpr double much_more = 2;  // factor by which one error must exceed another
+// A second look uses this many times as many paths. It follows if the first finds a difference that
+// chance gives in one list of ten. Few paths may all miss a bright caustic that the cells contain,
+// and then underestimate their own error.
 constexpr double quantile_of_doubt = 1.2816;
 constexpr int times_in_doubt = 4;
 
-// Whether points by cells err by more than is asked for, and as many paths as are allowed, of which
-// `few` were some, would err by much less.
+// True if points by cells miss the error asked for, and the largest allowed number of paths would
+// do much better. `few` holds the values by the audit's paths.
 bool are_worth_paths(const std::vector<PointLight>& by_cells, const std::vector<PointLight>& few,
                      double aim) {
   const double told = relative_error(by_cells, &PointLight::all);
@@ -30,7 +31,7 @@ bool are_worth_paths(const std::vector<PointLight>& by_cells, const std::vector<
   return aim > 0 && told > aim / share_of_error && told > much_more * by_paths;
 }
 
-// Light straight from sources is known already, and takes part in one sample of each set.
+// Direct light is already known, so only one sample of each set includes it.
 PointPlan audit_plan(const PointPlan& plan, int times = 1) {
   PointPlan p{.samples = plan.samples * paths_of_sample * times,
               .samples_per_estimate = 1,
@@ -83,7 +84,7 @@ std::optional<AuditFinding> audit(const Integrator& paths,
     of_cells.push_back(by_cells[i].indirect);
   }
   PointsRun round = run;
-  bool is_doubted = false;  // much, at the first look
+  bool is_doubted = false;  // the first look found a bias
   for (const bool is_last : {false, true}) {
     PointValues few =
         measure_points(paths, at, audit_plan(plan, is_last ? times_in_doubt : 1), round);
@@ -97,7 +98,7 @@ std::optional<AuditFinding> audit(const Integrator& paths,
     f.is_slight = is_last && !is_doubted;
     if (!is_last) f.is_worth_paths = are_worth_paths(by_cells, few.values, plan.error);
     is_doubted = f.bias > 0;
-    // What cannot be trusted anyway needs no second look.
+    // Points that paths will replace anyway need no second look.
     if (f.is_worth_paths || relative_bias(of_cells, f.by_paths, quantile_of_doubt) == 0) break;
     round.seed = hash_of(run.seed, 1u);
   }
@@ -132,7 +133,7 @@ void take_better(const Measurement& by_paths, double bias, PointLight& v) {
 void take_both(const AuditFinding& finding, std::vector<PointLight>& by_cells) {
   constexpr size_t several = 8;
   if (finding.points.size() < several) return;
-  double of_cells = 0, of_paths = 0;  // variances, relative to all light
+  double of_cells = 0, of_paths = 0;  // variances relative to all light
   for (size_t k = 0; k < finding.points.size(); ++k) {
     const PointLight& v = by_cells[finding.points[k]];
     if (!(v.all.illuminance_lx > 0)) continue;

@@ -1,9 +1,10 @@
-// Whether measurements may be trusted as far as they say.
+// Audit of measurements by cells: plain paths at a few points test for bias.
 //
-// What a method takes on trust (that light is even across a cell) no spread of its own samples
-// tells. A few paths, which trust nothing, do; where they say otherwise, more paths take its place.
+// The spread of samples does not show the error of a method's assumptions, such as uniform light
+// within a cell. Paths make no such assumption. Where they disagree with the cells, paths replace
+// the cells' values or the standard errors grow. Used by measure(); illuminance is in lux.
 // Reference: [1] DerSimonian & Laird, "Meta-analysis in clinical trials", Controlled Clinical
-//   Trials 7, 1986: the moments' estimate of what spreads measurements beyond their errors.
+//   Trials 7, 1986: moment estimate of the spread of measurements beyond their errors.
 #pragma once
 
 #include <optional>
@@ -13,49 +14,49 @@
 
 namespace troffer {
 
-// By how much, relative to their light, points differ from what others say of the same points
-// beyond what the standard errors of both let expect: [1], Eq. 8, about a mean that is known, 0;
-// root mean square. 0 where chance alone would let them differ by as much more often than in one of
-// so many lists: `normal_quantile` is that of 1 less that share (2.326: one of a hundred).
+// Returns the relative bias of `points` against `others`: the root mean square of the differences
+// beyond what the standard errors of both explain ([1], Eq. 8, about a known mean of 0). Returns 0
+// if the difference is not significant. `normal_quantile` is the normal quantile of the
+// significance level; 2.326 stands for one false alarm in a hundred lists.
 double relative_bias(const std::vector<Measurement>& points, const std::vector<Measurement>& others,
                      double normal_quantile = 2.326);
 
-// Numbers of points of a list, evenly spread over it: few, so that a long list takes little longer.
-// Not at even steps, for lists are often grids: those might meet the same few columns in every row.
+// Returns the indices of at most 32 points, one at random from each of equally long parts of the
+// list. Regular steps could meet the same few columns in every row of a grid.
 std::vector<size_t> few_of(size_t points);
 
 struct AuditFinding {
-  double bias = 0;         // relative_bias() of light that was reflected before
-  bool is_slight = false;  // the bias: only so many more paths have found it
+  double bias = 0;         // relative_bias() of indirect light
+  bool is_slight = false;  // only the second look, with more paths, found the bias
   bool is_worth_paths =
-      false;  // points err by more than is asked for, and paths would by much less
-  // That light by paths, and whose it is.
+      false;  // the error of points exceeds the asked one, and that of paths would be much less
+  // Indices of the audited points, and their indirect light by paths.
   std::vector<size_t> points;
   std::vector<Measurement> by_paths;
 };
 
-// Of points that were measured by cells, beside few of them by `paths` (light straight from sources
-// as theirs, MethodSettings::measures_by_paths), each with four times the plan's samples; and where
-// these say otherwise as they would by chance in one list of ten, by others, with sixteen times,
-// which decide. plan: theirs. Empty where a stop came before.
+// Audits points measured by cells under `plan`. `paths` measures a few of them again, with four
+// times the plan's samples; it must split direct and indirect light as the cells' integrator does
+// (MethodSettings::measures_by_paths). If the difference has a probability under one in ten, a
+// second look with sixteen times the samples decides. Returns nothing if it was stopped.
 std::optional<AuditFinding> audit(const Integrator& paths,
                                   const std::vector<MeasuringPlace>& places,
                                   const std::vector<PointLight>& by_cells, const PointPlan& plan,
                                   const PointsRun& run);
 
-// How all points are measured by paths where those of `plan` are not good enough.
+// Returns the plan for measuring all points by paths, where those of `plan` are not good enough.
 PointPlan plan_by_paths(PointPlan plan);
 
-// Where the bias is slight, points keep it, and are told it.
+// Adds a slight bias to the standard errors of points, which keep their values.
 void tell_bias(double bias, std::vector<PointLight>& by_cells);
 
-// Light that was reflected before by paths in place of that by cells, which is biased by about so
-// much of it; but not where paths err by more.
+// Replaces indirect light by cells, with this relative bias, by that of paths. If the paths'
+// standard error is larger, keeps the value and adds the bias to its error instead.
 void take_better(const Measurement& by_paths, double bias, PointLight& by_cells);
 
-// Where nothing is found wrong, points have been measured twice: those that were audited become the
-// mean of both, weighted by what errs less. By one weight for all of them, and of several: weights
-// of their own would prefer sums that are small by chance, as their errors are then.
+// Combines both measurements of audited points if no bias was found: the mean weighted by inverse
+// variance. All points share one weight, and at least eight are needed. Individual weights would
+// correlate with the values and favour sums that are small by chance.
 void take_both(const AuditFinding& finding, std::vector<PointLight>& by_cells);
 
 }  // namespace troffer

@@ -12,7 +12,7 @@ namespace troffer {
 ViewingCamera::ViewingCamera(const Camera& camera, int width, int height)
     : camera_(camera), longer_side_(std::max(width, height)) {
   const float aspect = float(width) / float(height);
-  float x0, x1, y0, y1;  // image plane: x to the right, y up
+  float x0, x1, y0, y1;  // image plane, x to the right, y up
   if (camera.has_screen_window) {
     x0 = camera.screen_window[0];
     x1 = camera.screen_window[1];
@@ -79,9 +79,9 @@ ImageSize own_size(const Camera& camera) {
   return {std::max(1, int(std::lround(float(lines) * aspect))), lines};
 }
 
-// A side of so many pixels, times a ratio.
+// Returns a side of this length in pixels, times a ratio.
 int other_side(int side, double ratio) {
-  constexpr double largest = 1 << 20;  // pictures of so many pixels are refused
+  constexpr double largest = 1 << 20;  // larger pictures are refused later
   return int(std::lround(std::clamp(side * ratio, 1.0, largest)));
 }
 
@@ -104,7 +104,7 @@ Camera look_at(const Vec3& eye, const Vec3& target, const Vec3& up, float fov_de
   c.position = eye;
   c.forward = normalize(along);
   const Vec3 side = cross(c.forward, up);
-  // Looking along `up`: any side will do.
+  // `up` is parallel to the view: any side vector will do.
   c.right = length(side) > 1e-6f * length(up) ? normalize(side) : Frame(c.forward).tangent;
   c.up = cross(c.right, c.forward);
   c.half_extent = float(std::tan(rad_from_deg(double(fov_deg)) / 2));
@@ -115,8 +115,8 @@ Camera look_at(const Vec3& eye, const Vec3& target, const Vec3& up, float fov_de
 Camera default_camera(const Scene& scene, const Vec3& up_hint) {
   const Box box = bounds(scene);
   if (box.is_empty()) return look_at({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 60);
-  // Rooms are what this program is for: stand near a corner at eye height, look across. The eye is
-  // inside the bounds, which also shows an object from close by.
+  // Most scenes are rooms: stand near a corner at eye height and look across. The eye is inside the
+  // bounds, which also suits single objects.
   const Vec3 e = box.extent(), tall = abs(up_hint);
   const Vec3 up = tall.x > tall.y && tall.x > tall.z ? Vec3{1, 0, 0}
                   : tall.y > tall.z                  ? Vec3{0, 1, 0}

@@ -19,17 +19,17 @@ namespace {
 constexpr uint32_t rays_of_pilot = 8192;
 constexpr uint32_t places_of_pilot = 16384;
 
-// A surface, and where it ends in the sum of all areas.
+// A surface, and the cumulative area up to its end.
 struct Area {
   double end = 0;
-  uint32_t geometry = 0, primitive = 0;  // as hits have them; of an instance: 0
+  uint32_t geometry = 0, primitive = 0;  // as in Hit; primitive is 0 for an instance
 };
 
 double area_of(const std::array<Vec3, 3>& k) {
   return 0.5 * double(length(cross(k[1] - k[0], k[2] - k[0])));
 }
 
-// Where each triangle of a mesh ends in the sum of its areas.
+// Returns the cumulative areas of a mesh's triangles.
 std::vector<double> area_sums(const Mesh& mesh) {
   const MeshInWorld as_it_is(mesh);
   std::vector<double> sums;
@@ -47,8 +47,8 @@ struct Areas {
   std::vector<std::vector<double>> of_instanced;  // per instanced mesh, in its own space
 };
 
-// Triangles of an instance share its area as in the mesh's own space, whatever the transform does
-// to their shapes: places need not be spread quite evenly.
+// Within an instance, triangles are weighted by their area in mesh space, even if the transform is
+// not uniform: the distribution of places need not be exact.
 Areas areas_of(const Scene& scene) {
   Areas areas;
   double sum = 0;
@@ -75,7 +75,7 @@ Areas areas_of(const Scene& scene) {
   return areas;
 }
 
-// The surface that is at `at` in the sum of all areas; of an instance its triangle.
+// Returns the surface at a cumulative area; for an instance also its triangle.
 Area surface_at_area(const Scene& scene, const Areas& areas, double at) {
   auto found = std::lower_bound(areas.all.begin(), areas.all.end(), at,
                                 [](const Area& a, double x) { return a.end < x; });
@@ -91,7 +91,7 @@ Area surface_at_area(const Scene& scene, const Areas& areas, double at) {
   return area;
 }
 
-// A point of it, and the normal there.
+// Samples a point on it, and the normal there.
 void sample(const Scene& scene, const Area& area, const Vec2& u, Vec3& position, Vec3& normal) {
   if (is_mesh(scene, area.geometry)) {
     const auto [a, b, c] = mesh_at(scene, area.geometry).corners(area.primitive);

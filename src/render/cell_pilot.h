@@ -1,4 +1,5 @@
-// From where a picture, or measuring points, will ask for light: what cells are made for.
+// Pilot samples for cache cells: the rays or places from which a picture or measuring points will
+// ask for light. CellBuilder makes cells for what they see.
 #pragma once
 
 #include <vector>
@@ -8,15 +9,16 @@
 
 namespace troffer {
 
-// Viewing rays all over the picture, the same for every crop of it.
+// Returns viewing rays spread over the whole picture; the same for every crop of it.
 CellPilot picture_pilot(const ViewingCamera& camera, const ImageSize& size, uint64_t seed);
 
-// Places all over the surfaces of the scene, as many on every square metre of either side.
+// Returns places on both sides of all surfaces of the scene, with uniform density per area.
 CellPilot surfaces_pilot(const PreparedScene& scene, uint64_t seed);
 
-// Points are often given on the very surface they measure, rounded to a few digits: rays start
-// some rounding errors of their coordinates off it, and never less than a hundredth of a millimetre
-// (or a millionth of a scene smaller than ten metres).
+// Returns the distance from a measuring point at which its rays start, metres. Such points often
+// lie on the surface that they measure, rounded to a few digits. The offset covers some rounding
+// errors of the coordinates. It is at least .01 mm, or a millionth of the diagonal in scenes under
+// 10 m.
 float offset_of_point(const Vec3& position, const Box& scene);
 
 }  // namespace troffer

@@ -13,20 +13,21 @@ namespace {
 
 constexpr OwnFile kind{{'t', 'r', 'o', 'f', 'f', 'C', 'h', 'k'}, 2, "checkpoint"};
 
-// Then chunks: size, bytes, hash of these and of the hash before; and after the last a size of 0.
+// The header of the file. Chunks follow, each as its size, its bytes, and a hash of these and of
+// the hash before. A chunk of size 0 ends the file.
 struct Header {
   char magic[8];
   uint32_t version;
   int32_t part, parts;
   uint32_t unused;
-  char program[16];  // its version, filled up with zeros
+  char program[16];  // version of the program, padded with zeros
   uint64_t settings, scene, preparation;
-  uint64_t hash;  // of all else
+  uint64_t hash;  // of all other fields
 };
 static_assert(sizeof(Header) == 72);
 
-constexpr size_t most_bytes = size_t(16) << 30;  // a film takes at most half of it
-constexpr double most_of_interval = 0.1;         // spent with writing
+constexpr size_t most_bytes = size_t(16) << 30;  // safety limit; a film takes at most half of it
+constexpr double most_of_interval = 0.1;         // share of the time that writing may take
 
 uint64_t chained(uint64_t before, std::span<const uint8_t> chunk) {
   std::vector<uint8_t> bytes;

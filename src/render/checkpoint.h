@@ -1,9 +1,9 @@
-// A file from which a rendering that was broken off goes on, to the same bytes.
+// Checkpoint: a file from which an interrupted rendering continues, with the same bytes as result.
 //
-// It holds how far each tile is (tile_book.h), its pixels, and how many further rays the pixels
-// are to get, once that is decided. What was prepared is made again, which is the same each time.
-// The file is replaced as a whole: whenever the program or the machine ends, the last one is there.
-// It may come from anybody: what is read is checked.
+// It holds the progress of each tile (tile_book.h), its pixels, and the further rays planned for
+// them once that is decided. Preparation is repeated, since it is deterministic. The file is
+// replaced atomically, so that the last complete one survives a crash. Its contents are checked,
+// since it may come from an untrusted source.
 #pragma once
 
 #include <atomic>
@@ -20,37 +20,38 @@
 
 namespace troffer {
 
-// Which share of a picture: the part-th of `parts`, counted from 1.
+// Share of a picture: part `part` of `parts`, counted from 1.
 struct PictureShare {
   int part = 1, parts = 1;
   bool operator==(const PictureShare&) const = default;
 };
 
+// Writes and reads the checkpoint of one rendering. Threads may call take_turn() concurrently.
 class Checkpoint {
  public:
   using Clock = std::chrono::steady_clock;
-  // Is given one chunk of what is to be kept after the other; none is empty.
+  // Receives one chunk after the other; no chunk is empty.
   using Add = std::function<void(std::span<const uint8_t>)>;
   using Fill = std::function<void(const Add&)>;
   using Warn = std::function<void(const std::string&)>;
 
-  // interval: seconds from one writing to the next; where it takes longer than a tenth of that,
-  // more. warn: what could not be written, once for each reason.
+  // interval: seconds between two writings; more if writing takes longer than a tenth of it. warn:
+  // receives each distinct reason why the file could not be written, once.
   Checkpoint(std::string file, PictureKey key, PictureShare share, double interval, Warn warn);
 
-  // Reads the file. InputError for one of another picture, share or program, one that is damaged,
-  // or none.
+  // Reads the file. Throws InputError if it is missing or damaged, or belongs to another picture,
+  // share or program.
   void read();
-  // The chunks that were read, in order; none where nothing was.
+  // Returns the chunks that were read, in order; empty if read() was not called.
   const std::vector<std::span<const uint8_t>>& chunks() const { return chunks_; }
   void forget_chunks();
-  [[noreturn]] void refuse_chunks() const;  // InputError: they say what cannot be
+  [[noreturn]] void refuse_chunks() const;  // throws InputError: the chunks hold impossible values
 
-  // True for one caller at a time, who is to call write() then: the interval is over.
+  // Returns true if the interval is over, to one caller at a time, who must then call write().
   bool take_turn();
-  // Where the file cannot be written, it stays as it was, and `warn` is told why.
+  // Writes the file. If that fails, the old file stays, and `warn` receives the reason.
   void write(const Fill& fill);
-  // Why the last write() failed; empty: it did not.
+  // Returns the reason why the last write() failed, or an empty string.
   const std::string& failure() const { return failure_; }
 
  private:
@@ -62,11 +63,11 @@ class Checkpoint {
   std::chrono::duration<double> interval_;
   Warn warn_;
   std::vector<uint8_t> bytes_;
-  std::vector<std::span<const uint8_t>> chunks_;  // of these
+  std::vector<std::span<const uint8_t>> chunks_;  // views of bytes_
   std::atomic<bool> is_writing_ = false;
-  Clock::time_point next_;  // not before this
+  Clock::time_point next_;  // earliest time of the next writing
   std::string failure_;
-  std::set<std::string> warned_;  // of these reasons
+  std::set<std::string> warned_;  // reasons already reported
 };
 
 }  // namespace troffer

@@ -1,5 +1,6 @@
-// Where edges run through pixels, found without any of the samples that the picture is made of:
-// refinement that goes by it keeps the mean of every pixel.
+// Edges within pixels, found by geometry and not by the picture's own samples. Refinement that
+// depends on them therefore leaves the mean of every pixel unbiased. Rendering makes one after the
+// first pass.
 #pragma once
 
 #include <cstdint>
@@ -14,22 +15,22 @@ namespace troffer {
 
 class EdgeMap {
  public:
-  // One ray through each corner of a pixel, things that lie between corners, and the outlines of
-  // lights, of the same region.
+  // Traces one ray through each corner of a pixel, looks for sub-pixel features between the
+  // corners, and adds the light outlines of the same region.
   EdgeMap(const PreparedScene& scene, const ViewingCamera& camera, const PixelRect& region,
           const LightOutlines& outlines, int threads);
 
-  // The corners of the pixel see different surfaces, or something is seen that is none of theirs.
+  // True if the corners of the pixel see different surfaces, or if it shows a sub-pixel feature.
   bool has_surface_edge(int x, int y) const {
     return (edges_[index(x, y)] & (surface_edge | thin_thing)) != 0;
   }
-  // … the latter: how much of the pixel it covers is not known.
+  // True if the pixel shows a sub-pixel feature, whose coverage is unknown.
   bool has_thin_thing(int x, int y) const { return (edges_[index(x, y)] & thin_thing) != 0; }
-  // The outline of a light goes through it.
+  // True if a light outline passes through the pixel.
   bool has_light_edge(int x, int y) const {
     return (edges_[index(x, y)] & (light_edge | known_light_edge)) != 0;
   }
-  // … and how much of it the light covers is not known (LightOutlines::is_known).
+  // True if one does, and the light's coverage is unknown (LightOutlines::is_known).
   bool has_unknown_light_edge(int x, int y) const {
     return (edges_[index(x, y)] & light_edge) != 0;
   }

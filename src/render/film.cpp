@@ -17,7 +17,7 @@ Rgb as_rgb(const Vec3d& v) {
   return {float(v.x), float(v.y), float(v.z)};
 }
 
-// From the spread of n values; 0 with fewer than two.
+// Returns the standard error of the mean of n values; 0 with fewer than two.
 double error_of_mean(double sum, double squares, double n) {
   if (n < 2) return 0;
   const double mean = sum / n;
@@ -29,7 +29,7 @@ bool needs_first_hit(Aov a) {
          a == Aov::shadow_rays || a == Aov::sources;
 }
 
-// Black, with the name and the channels that files have of it.
+// Returns a black layer with the name and the channels that files use.
 Layer empty_layer(Aov aov, const PixelRect& window) {
   const AovRow& row = row_of(aov);
   return {std::string(row.name),
@@ -41,7 +41,7 @@ Layer empty_layer(Aov aov, const PixelRect& window) {
 
 double Film::bytes(double pixels, const std::vector<Aov>& aovs, bool has_surrogates) {
   const bool has_first_hits = std::any_of(aovs.begin(), aovs.end(), needs_first_hit);
-  // The layers of the result stand beside the sums when they are made.
+  // Layers of the result exist together with the sums.
   return pixels * double(sizeof(Pixel) + (has_first_hits ? sizeof(FirstHit) : 0) +
                          (has_surrogates ? sizeof(Known) : 0) + sizeof(Rgb) * (1 + aovs.size()));
 }
@@ -54,16 +54,16 @@ Film::Film(const PixelRect& window, const std::vector<Aov>& aovs, const Vec3d& o
   if (std::any_of(aovs.begin(), aovs.end(), needs_first_hit)) first_hits_.resize(pixels_.size());
 }
 
-// Of the mean luminance, from the spread of the samples.
+// Returns the standard error of the mean luminance, from the spread of the samples.
 double Film::standard_error(const Pixel& p) {
   return error_of_mean(p.sum_luminance, p.sum_luminance_squared, p.samples);
 }
 
-// What the method tells of its sampling, where it does: samples' errors that are independent add up
-// by their squares, those that they share add up; of light that it does not tell of (what gloss
-// shows), and where it tells of none, the spread of the samples.
+// Uses the method's own error estimates if there are any. Independent errors of samples add in
+// quadrature; shared ones add linearly. Light that the method does not cover, such as gloss,
+// contributes the spread of its samples. Without estimates, the spread of all samples is used.
 //
-// Of whole pictures also what samples differ by beyond that: what edges within the pixel leave.
+// For whole pictures, variance_beyond() adds what edges within the pixel contribute.
 double Film::estimated_error(size_t i) const {
   const Pixel& p = pixels_[i];
   if (!p.has_source_variance)
@@ -75,8 +75,8 @@ double Film::estimated_error(size_t i) const {
                    variance_of_surrogates(i));
 }
 
-// Of a pixel's mean, what its glances leave of the edges through it: blocks of them lie in as many
-// squares of the pixel, so that means of n err by n^-3/4.
+// Returns the variance of a pixel's mean due to surrogate samples, which edges within the pixel
+// cause. Blocks of them are stratified over the pixel, so n blocks err by n^-3/4.
 double Film::variance_of_surrogates(size_t i) const {
   if (known_.empty()) return 0;
   const KnownSums& g = known_[i].surrogates;
@@ -91,16 +91,17 @@ double Film::variance_of_surrogates(size_t i) const {
   return sqr(share) * of_block / std::pow(blocks, 1.5);
 }
 
-// Of a pixel's sum, what is told of its samples, and all that others than these vary by.
+// Returns the variance of a pixel's sum: the method's own estimate, plus the spread of the light
+// that it does not cover.
 double Film::independent_variance(const Pixel& p) {
   const double n = p.samples;
   return p.source_variance + sqr(error_of_mean(p.untold, p.without_error_squared, n) * n);
 }
 
-// Of a pixel's sum, what its samples are spread by more than this. Each four of them lie in four
-// quarters of the pixel, each sixteen in sixteenths, each 64 likewise: an edge through it leaves
-// the mean of a block a half, a quarter, an eighth of the variance of independent ones; what is
-// smaller than their share of the pixel, all of it.
+// Returns the variance of a pixel's sum beyond the independent one. Blocks of 4, 16 or 64 samples
+// are stratified over as many squares of the pixel. At an edge, the variance of a block's mean is a
+// half, a quarter or an eighth of that of independent samples. Features smaller than such a square
+// keep all of it.
 double Film::variance_beyond(size_t i, double independent) const {
   constexpr double gain_of_edges = 0.5;
   const double n = pixels_[i].samples;
@@ -137,7 +138,7 @@ PixelEstimate Film::estimate_of(size_t i) const {
   if (k.surrogates.count == 0) return e;
   const double of_surrogates =
       error_of_mean(k.surrogates.luminance, k.surrogates.squares, double(k.surrogates.count));
-  // What is known was seen by both.
+  // Known radiance comes from both kinds of samples.
   const double m = k.surrogates.count, share = m / (m + n);
   e.luminance += share * (double(k.surrogates.luminance) / m - double(k.samples.luminance) / n);
   e.standard_error = std::sqrt(sqr(e.error_of_rest) + sqr(of_surrogates) * share);
@@ -150,8 +151,8 @@ Film::Light Film::light_of(size_t i) const {
   const double each = 1.0 / p.samples;
   const Light plain{p.direct * each, p.indirect * each};
   if (known_.empty()) return plain;
-  // There is no less light than none: what is known, or what lamps send on average, may be too much
-  // of what few rays have seen. Then the mean of what these brought stands, as it came.
+  // With few samples, the known radiance or the correction of lamp edges may exceed what they saw,
+  // so the result would be negative. The plain mean of the samples replaces it then.
   const auto is_less = [](const Light& l) {
     const Vec3d sum = l.direct + l.indirect;
     return std::min({sum.x, sum.y, sum.z}) < 0;
@@ -199,7 +200,7 @@ void Film::Known::add_surrogate(const KnownRadiance& seen) {
   surrogate_block = 0;
 }
 
-// so_far: samples, with this one.
+// so_far: number of samples, including this one.
 void Film::Known::add_rest(float value, uint32_t so_far) {
   rest += value;
   squares_of_rest += value * value;

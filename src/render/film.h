@@ -1,4 +1,6 @@
-// Sums of samples per pixel, from which every layer is made.
+// Film: sums of samples per pixel, from which all layers of a picture are made. Rendering adds
+// viewing rays and surrogate samples; refinement reads the estimated errors. Radiance is linear RGB
+// in the scene's units; errors are standard errors of luminance. film_state.cpp saves and loads it.
 #pragma once
 
 #include <cstdint>
@@ -13,28 +15,28 @@
 
 namespace troffer {
 
-// A rectangle of pixels, x1 and y1 exclusive.
+// A rectangle of pixels; x1 and y1 are exclusive.
 struct PixelRect {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   int width() const { return x1 - x0; }
   int height() const { return y1 - y0; }
 };
 
-// What is known of a pixel.
+// Current estimate for a pixel.
 struct PixelEstimate {
   uint32_t samples = 0;
   double luminance = 0, standard_error = 0;  // of the pixel
-  // Of samples by themselves, without what is known of them (Film::add_known): the mean, and its
-  // standard error.
+  // Mean difference between samples and their known radiance, and its standard error. Equal to the
+  // values above if no known radiance is kept (Film::expect_surrogates).
   double rest = 0, error_of_rest = 0;
-  // How much of the variance of one sample is chance of its own, whatever its place in the pixel.
+  // Part of the variance of one sample that does not depend on its position in the pixel.
   double independent_variance = 0;
 };
 
-// What glances at a pixel (Integrator::glance) have seen, or what is known of its samples.
+// Sums of known radiance: at surrogate samples (Integrator::surrogate_radiance) or at samples.
 struct KnownSums {
   Rgb direct, indirect;
-  float luminance = 0, squares = 0;  // of luminance
+  float luminance = 0, squares = 0;  // squares of luminance
   uint32_t count = 0;
 
   void add(const KnownRadiance& k) {
@@ -47,54 +49,56 @@ struct KnownSums {
   }
 };
 
-// A pixel with glances is the mean of what is known at these and at its samples, plus the mean of
-// how far its samples differ from what is known of them: a control variate. The same in the mean,
-// for glances lie in the pixel as samples do; what is known of many rays takes the noise from where
-// edges are.
+// Sums of all pixels of a window. Surrogate samples are a control variate: a pixel is the mean
+// known radiance over surrogates and samples, plus the mean difference between samples and their
+// known radiance. Both kinds are distributed alike in the pixel, so this is unbiased. It removes
+// most noise at edges, since surrogates are many.
 class Film {
  public:
-  // Bytes that a film of this many pixels takes.
+  // Returns the memory of a film with this many pixels, in bytes.
   static double bytes(double pixels, const std::vector<Aov>& aovs, bool has_surrogates);
 
-  // `window`: the pixels kept, in coordinates of the whole image. `origin`: the scene's, added to
-  // positions that are shown.
+  // `window`: the pixels kept, in coordinates of the whole image. `origin`: origin of the scene,
+  // added to the positions in layers.
   Film(const PixelRect& window, const std::vector<Aov>& aovs, const Vec3d& origin = {});
 
-  // Adds sample i of a batch to pixel (x, y). Different pixels may be added to concurrently; one
-  // pixel's samples must come in a fixed order for the sums to be reproducible. Samples that are
-  // not finite count as black; returns whether it was finite.
+  // Adds sample i of a batch to pixel (x, y). Threads may add to different pixels concurrently. The
+  // samples of one pixel must come in a fixed order, so that sums are reproducible. Samples that
+  // are not finite count as black; returns false for them.
   bool add(int x, int y, const RadianceBatch& batch, size_t i, float depth);
 
-  // Of samples whose method does not tell what they err by (PixelSampling): for estimated_error().
+  // Sets the convergence of stratified samples (PixelSampling), for estimated_error() of methods
+  // without error estimates.
   void set_evenness(double evenness) { evenness_ = evenness; }
-  // From now on, what batches know of samples is kept. Before the first sample.
+  // Keeps known radiance of samples. Call before the first sample.
   void expect_surrogates() { known_.resize(pixels_.size()); }
-  // Layers of first hits are those of glances where there are any, as light is.
+  // Adds surrogate sample i of a batch. If a pixel has surrogates, its layers of first hits come
+  // from them alone.
   void add_surrogate(int x, int y, const RadianceBatch& batch, size_t i, float depth);
-  // So many samples will the pixel have, of which it has no more than the first four yet: how far
-  // they differ is told by larger blocks of them, which are spread more evenly.
+  // Announces the pixel's final sample count. The error estimate then compares blocks of samples:
+  // blocks are better stratified than single samples. Call before the fifth sample.
   void expect_samples(int x, int y, uint32_t count);
-  // Of samples.
+  // Returns the sums of known radiance at samples.
   const KnownSums& known(int x, int y) const { return known_[index(x, y)].samples; }
 
-  // (x, y) as in add().
+  // Returns the estimate for a pixel; (x, y) as in add().
   PixelEstimate estimate(int x, int y) const;
-  // Of the picture, by the samples so far; nothing without any.
+  // Returns the pixel's radiance by the samples so far, or nothing without samples.
   std::optional<Rgb> radiance(int x, int y) const;
 
-  // Standard error of the pixel's luminance: that of the layer `error`.
+  // Returns the standard error of the pixel's luminance, as in layer `error`.
   double estimated_error(int x, int y) const { return estimated_error(index(x, y)); }
 
-  // The picture, then the AOVs in the order given.
+  // Returns the picture, then the AOVs in the order given.
   std::vector<Layer> layers() const;
 
-  // All that is kept of a pixel, as bytes, and how many.
+  // Appends all data of a pixel; returns their size in bytes.
   void save(int x, int y, std::vector<uint8_t>& out) const;
   size_t bytes_of_pixel() const;
-  // The pixel as save() has left it; `in` has bytes_of_pixel() left. False where it says what no
-  // pixel can be.
+  // Restores a pixel from the bytes of save(); `in` must have bytes_of_pixel() left. Returns false
+  // if the values are impossible.
   bool load(int x, int y, ByteReader& in);
-  // … of glances.
+  // Returns the number of surrogate samples.
   uint32_t surrogates(int x, int y) const {
     return known_.empty() ? 0 : known_[index(x, y)].surrogates.count;
   }
@@ -104,10 +108,12 @@ class Film {
   struct Pixel {
     Vec3d direct, indirect;
     double sum_luminance = 0, sum_luminance_squared = 0;
-    double source_variance = 0;  // of the samples' direct light, as far as the method tells it
-    double shared_error = 0;     // … of their indirect light, likewise
-    double drawn_error = 0;      // … a draw of it
-    double untold = 0, without_error_squared = 0;  // luminance of light of which it does not tell
+    // variance of the samples' direct light, as estimated by the method
+    double source_variance = 0;
+    double shared_error = 0;  // RadianceBatch::shared_error, summed
+    double drawn_error = 0;   // RadianceBatch::drawn_error, summed
+    // luminance without an error estimate by the method
+    double untold = 0, without_error_squared = 0;
     uint32_t samples = 0;
     bool has_source_variance = false, has_whole_error = false;
   };
@@ -121,16 +127,17 @@ class Film {
     void add(const RadianceBatch& batch, size_t i, float at_depth);
     void forget_hits();
   };
-  // Of one pixel.
+  // Known radiance of one pixel.
   struct Known {
     KnownSums samples, surrogates;
-    Rgb evened;                           // RadianceBatch::evened, of samples
-    float rest = 0, squares_of_rest = 0;  // luminance of samples, less what is known
-    // … summed over blocks of so many samples; the sums of whole blocks, and their squares
+    Rgb evened;                           // RadianceBatch::evened, over samples
+    float rest = 0, squares_of_rest = 0;  // luminance of samples minus known radiance
+    // The same by blocks of block_size samples: the unfinished block, the sum of whole blocks, and
+    // the sum of their squares.
     uint32_t block_size = first_block_size;
     float block = 0, blocks = 0, squares_of_blocks = 0;
-    // Luminance that glances have seen, over blocks of surrogates_of_block: the one that is not
-    // whole yet, and the squares of those that are.
+    // Luminance of surrogates by blocks of surrogates_of_block: the unfinished block, and the sum
+    // of squares of whole ones.
     float surrogate_block = 0, squares_of_surrogate_blocks = 0;
     void add_rest(float value, uint32_t so_far);
     void add_surrogate(const KnownRadiance& seen);
@@ -153,7 +160,7 @@ class Film {
   double evenness_ = 0;
   std::vector<Pixel> pixels_;
   std::vector<FirstHit> first_hits_;  // empty if no AOV needs it
-  std::vector<Known> known_;          // empty where nothing is known before light is sampled
+  std::vector<Known> known_;          // empty unless expect_surrogates() was called
 };
 
 }  // namespace troffer

@@ -1,4 +1,4 @@
-// A film's pixels as bytes and back (film.h).
+// Saving and loading of a film's pixels (film.h).
 #include <cmath>
 
 #include "render/film.h"
@@ -7,7 +7,7 @@ namespace troffer {
 
 namespace {
 
-// Without gaps between members: what is in those is nobody's.
+// Stored form of a pixel, without padding between members: padding has undefined bytes.
 struct PixelBytes {
   Vec3d direct, indirect;
   double luminance, luminance_squared, source_variance, shared_error, drawn_error, untold,

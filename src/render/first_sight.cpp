@@ -16,19 +16,19 @@ namespace {
 constexpr int most_blocks = 128;  // along the longer side
 constexpr size_t triangles_at_a_time = 1 << 16;
 
-// What a block of pixels shows: the nearest surface, and the cosine at which it is seen.
+// The nearest surface in a block of pixels, and the cosine at which it is seen.
 struct Seen {
   float distance = std::numeric_limits<float>::infinity();
   float cosine = 0;
   void take(float d, float c) {
-    // Of two at one distance always the same: threads come in any order.
+    // Ties are resolved by the cosine, so that the order of threads does not matter.
     if (d > distance || (d == distance && c <= cosine)) return;
     distance = d;
     cosine = c;
   }
 };
 
-// The window in blocks, with a ray through the middle of each.
+// The window divided into blocks, with a ray through the middle of each.
 struct Grid {
   PixelRect window;
   int side, across, down;
@@ -62,7 +62,8 @@ class Sight {
     for (size_t k = 0; k < 3; ++k)
       before += camera_.raster_of(p[k], at[k]) && std::isfinite(at[k].x + at[k].y) ? 1 : 0;
     if (before == 0) return;
-    BlockRange r{0, grid_.across - 1, 0, grid_.down - 1};  // partly behind the camera: anywhere
+    // all blocks if the triangle is partly behind the camera
+    BlockRange r{0, grid_.across - 1, 0, grid_.down - 1};
     if (before == 3) {
       r = around(at);
       if (r.i1 < 0 || r.j1 < 0 || r.i0 >= grid_.across || r.j0 >= grid_.down) return;
@@ -100,7 +101,8 @@ class Sight {
   }
 
  private:
-  // The blocks that the corners are in; one beyond the window stands for all there.
+  // Returns the blocks around the corners. Indices just beyond the window stand for everything
+  // there.
   BlockRange around(const std::array<Vec2, 3>& at) const {
     const auto block = [&](float raster, int first, int count) {
       const float b = (raster - float(first)) / float(grid_.side);
@@ -114,7 +116,7 @@ class Sight {
 
   Seen& seen(int i, int j) { return seen_[size_t(j) * size_t(grid_.across) + size_t(i)]; }
 
-  // A triangle within one block, behind what is seen there.
+  // True if a triangle within one block lies behind the surface seen there.
   bool is_hidden(int i, int j, const std::array<Vec3, 3>& p) {
     return distance_of(p) > seen(i, j).distance;
   }
@@ -128,12 +130,12 @@ class Sight {
     return (p[0] + p[1] + p[2]) * (1.0f / 3.0f);
   }
 
-  // A triangle within one block: as if it filled it.
+  // Adds a triangle within one block as if it filled the block.
   void take(int i, int j, const std::array<Vec3, 3>& p, const Vec3& normal) {
     seen(i, j).take(distance_of(p), std::abs(dot(normal, camera_.towards_eye(middle_of(p)))));
   }
 
-  // Where the block's ray meets the triangle, if it does.
+  // Adds the intersection of the block's ray with the triangle, if there is one.
   void intersect(int i, int j, const std::array<Vec3, 3>& p, const Vec3& normal) {
     const Ray& ray = grid_.rays[size_t(j) * size_t(grid_.across) + size_t(i)];
     const float cosine = dot(normal, ray.direction);
@@ -150,13 +152,14 @@ class Sight {
   std::vector<Seen> seen_;
 };
 
-// Every step-th triangle of a mesh, from `first` on.
+// Every step-th triangle of a mesh, starting at `first`.
 struct MeshPart {
   uint32_t geometry;
   size_t first, step;
 };
 
-// Of very many triangles, which are small, some are enough: of instances of large meshes.
+// Divides the meshes into parts. Of instances of large meshes only some triangles are taken, since
+// they are small.
 std::vector<MeshPart> parts_of(const Scene& scene) {
   constexpr size_t most_triangles = 1 << 24, few_triangles = 1 << 12;
   const size_t every = 1 + triangle_count(scene) / most_triangles;

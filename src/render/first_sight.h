@@ -1,4 +1,5 @@
-// What the camera sees of a scene that nothing has been built for yet.
+// A quick picture of a scene for which nothing has been built yet. The preview shows it while
+// images are being read and the tracer is being built.
 #pragma once
 
 #include "image/image.h"
@@ -8,9 +9,9 @@
 
 namespace troffer {
 
-// A picture of the window, coarse and grey, as if light came from the camera: triangle by triangle,
-// without a tracer, in a fraction of a second for millions of them. Spheres and disks are not
-// shown.
+// Returns a coarse grey picture of the window, lit from the camera. It projects triangle by
+// triangle without a tracer, in a fraction of a second for millions of triangles. Spheres and disks
+// are not shown.
 Image first_sight(const Scene& scene, const ViewingCamera& camera, const PixelRect& window,
                   int threads);
 

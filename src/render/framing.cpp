@@ -15,7 +15,7 @@ namespace {
 constexpr size_t looked_from = 64, rays_each = 32;
 constexpr float room_share = 0.65f;
 
-// Spheres and disks count by their front too; what is thin counts from both sides.
+// True if the ray meets the front of a triangle. Disks count from both sides, spheres never.
 bool meets_front(const Scene& scene, const Ray& ray, const Hit& hit) {
   if (!hit.is_valid()) return false;
   if (!is_mesh(scene, hit.geometry)) return hit.geometry > scene.meshes.size();
@@ -23,8 +23,8 @@ bool meets_front(const Scene& scene, const Ray& ray, const Hit& hit) {
   return dot(cross(b - a, c - a), ray.direction) < 0;
 }
 
-// Before it, a little to its right and above, so that all of its bounding sphere is seen. glTF's
-// models face +z; where z is up, -y.
+// Looks at the object from the front, a little from its right and above. The whole bounding sphere
+// is visible. glTF models face +z; where z is up, they face -y.
 Camera outside_camera(const Scene& scene, const Vec3& up) {
   const Box box = bounds(scene);
   const Vec3 front = std::abs(up.z) > 0.7f ? Vec3{0, -1, 0} : Vec3{0, 0, 1};

@@ -42,10 +42,11 @@ void GapFiller::use(std::unique_ptr<Integrator> quick) {
   for (Work& w : work_) w.scratch.reset();
 }
 
-// Of the samples first_sample … of each pixel; film: null: nobody wants them.
+// Traces samples first_sample … first_sample + 3 of each pixel. film: null to discard them.
 void GapFiller::trace(const std::vector<Pixel2>& pixels, uint32_t first_sample, Film* film,
                       const StopFlag& stop) {
-  const uint64_t seed = hash_of(options_.seed, uint64_t{0x6761'7073});  // not the picture's own
+  // independent of the picture's own samples
+  const uint64_t seed = hash_of(options_.seed, uint64_t{0x6761'7073});
   const size_t batches = (pixels.size() + pixels_of_batch - 1) / pixels_of_batch;
   parallel_for_slots(batches, options_.threads, [&](size_t b, size_t slot) {
     if (stop.load(std::memory_order_relaxed)) return;
@@ -76,7 +77,7 @@ double GapFiller::seconds_per_pixel(const PixelRect& window) {
     for (int i = 0; i < nx; ++i)
       pixels.push_back({window.x0 + i * window.width() / nx, window.y0 + j * window.height() / ny});
   const StopFlag never = false;
-  trace(pixels, 0, nullptr, never);  // the first time takes longer
+  trace(pixels, 0, nullptr, never);  // warm-up: the first run takes longer
   const auto start = std::chrono::steady_clock::now();
   trace(pixels, samples_at_once, nullptr, never);
   return seconds_since(start) / double(pixels.size());

@@ -15,12 +15,13 @@
 
 namespace troffer {
 
-// Path tracing of the light that is asked for: `--indirect none` and direct methods, direct light.
+// Returns a path tracer for the light that the options ask for. Direct methods and `--indirect
+// none` get direct light only.
 std::unique_ptr<Integrator> paths_for(const PreparedScene& scene, const RenderOptions& options);
 
 class GapFiller {
  public:
-  // All must outlive this.
+  // The arguments must outlive this object.
   GapFiller(const PreparedScene& scene, const ViewingCamera& camera, const RenderOptions& options);
 
   // Replaces path tracing, from the next call on.
@@ -31,9 +32,9 @@ class GapFiller {
   // the window.
   double seconds_per_pixel(const PixelRect& window);
 
-  // Fills pixels of the window that have no samples, and tells how many they were: with 4 each, so
-  // that they tell their error, and more as time is left. Only a set `parent` of the deadline stops
-  // it before that.
+  // Fills the pixels of the window that have no samples, and returns their number. Each gets 4
+  // samples, enough for an error estimate, and more while time is left. Only the deadline's
+  // `parent` stops it before that.
   size_t fill(Film& film, const PixelRect& window, const Deadline& deadline);
 
  private:

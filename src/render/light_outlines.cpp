@@ -16,8 +16,8 @@ namespace {
 
 using Corner = LightOutlines::Corner;
 
-// What of a convex polygon lies within the unit square (Sutherland & Hodgman 1974). Sides along the
-// square's are not of the outline.
+// Clips a convex polygon to the unit square (Sutherland & Hodgman 1974). New sides along the square
+// are not part of the outline.
 void clip_to_pixel(std::vector<Corner>& polygon) {
   std::vector<Corner> in;
   for (double Vec2d::*const axis : {&Vec2d::x, &Vec2d::y})
@@ -43,7 +43,7 @@ void clip_to_pixel(std::vector<Corner>& polygon) {
     }
 }
 
-// Of a convex polygon; > 0 where it turns from x to y.
+// Returns the signed area of a convex polygon; positive if it turns from x to y.
 double area_of(std::span<const Corner> p) {
   double twice = 0;
   for (size_t i = 2; i < p.size(); ++i) {
@@ -53,10 +53,11 @@ double area_of(std::span<const Corner> p) {
   return 0.5 * twice;
 }
 
-// Where a point lies, as to a convex polygon of positive area.
+// Signed distances of a point to the sides of a convex polygon of positive area, in pixels.
 struct Depth {
-  double depth = std::numeric_limits<double>::infinity();    // within it; < 0: it does not
-  double outline = std::numeric_limits<double>::infinity();  // … as to sides of the outline
+  // to the nearest side; < 0 outside of the polygon
+  double depth = std::numeric_limits<double>::infinity();
+  double outline = std::numeric_limits<double>::infinity();  // to the nearest side of the outline
 };
 Depth depth_in(std::span<const Corner> polygon, const Vec2d& p) {
   Depth d;
@@ -72,10 +73,10 @@ Depth depth_in(std::span<const Corner> polygon, const Vec2d& p) {
   return d;
 }
 
-// So that its area is positive.
+// Reverses a polygon of negative area.
 void turn(std::vector<Corner>& piece) {
   if (!(area_of(piece) < 0)) return;
-  // Each corner says what the side after it is: that comes before it now.
+  // A corner describes the side after it; after reversal that side comes before it.
   const size_t n = piece.size();
   std::vector<Corner> turned;
   for (size_t i = 0; i < n; ++i)
@@ -98,17 +99,17 @@ struct LightOutlines::Visit {
   bool is_hidden = false;
 };
 
-// A light as the picture has it.
+// A light projected to the picture.
 struct LightOutlines::Shapes {
   bool is_made = false, is_known = false;
   Rgb radiance;
-  std::vector<std::vector<Corner>> pieces;  // of positive area
+  std::vector<std::vector<Corner>> pieces;  // polygons of positive area
   void make(const Scene& scene, const Light& light, const ViewingCamera& camera);
 };
 
 void LightOutlines::Shapes::make(const Scene& scene, const Light& light,
                                  const ViewingCamera& camera) {
-  constexpr size_t most = 64;  // each is looked at for each pixel of its light's outline
+  constexpr size_t most = 64;  // limit on cost: each pixel of the outline tests every piece
   is_made = true;
   radiance = light.radiance;
   if (camera.has_lens() || !is_even(light) || light.triangles.size() > most) return;
@@ -116,7 +117,7 @@ void LightOutlines::Shapes::make(const Scene& scene, const Light& light,
     std::vector<Corner> piece;
     for (const LightCorner& c : loop) {
       Vec2 at;
-      if (!camera.raster_of(c.position, at)) return;  // not all before the camera
+      if (!camera.raster_of(c.position, at)) return;  // partly behind the camera
       piece.push_back({Vec2d(at), c.is_outline});
     }
     turn(piece);
@@ -125,8 +126,8 @@ void LightOutlines::Shapes::make(const Scene& scene, const Light& light,
   is_known = true;
 }
 
-// Of places in the picture, relative to its size: rays that are so close to an outline may miss
-// what they should meet.
+// Rounding error of positions in the picture, relative to its size. Rays this close to an outline
+// may hit or miss arbitrarily.
 static constexpr double rounding = 2e-6;
 
 LightOutlines::LightOutlines(const PreparedScene& scene, const ViewingCamera& camera,
@@ -135,16 +136,16 @@ LightOutlines::LightOutlines(const PreparedScene& scene, const ViewingCamera& ca
       knows_covers_(knows_covers),
       blur_(rounding * camera.longer_side()),
       pixels_(size_t(region.width()) * size_t(region.height()), nothing) {
-  // Where they run, and rays from the eye that end before them: what stands close before the light,
-  // a fixture's rim, does not hide it here.
+  // Walks along the outlines and traces a ray from the eye to each point. Rays end just before the
+  // light, so that objects close to it, such as a fixture's rim, do not count as hiding it.
   constexpr float reach = 0.999f;
-  constexpr size_t most_rays = size_t(1) << 16;  // at once
+  constexpr size_t most_rays = size_t(1) << 16;  // traced together
   std::vector<Visit> visits;
   std::vector<Ray> rays;
   std::vector<uint8_t> is_hidden;
   const auto trace = [&] {
     is_hidden.assign(rays.size(), 0);
-    // One by one: in packets it may depend on others what a ray along an edge meets.
+    // Single rays: in a packet, the hit of a ray along an edge may depend on the other rays.
     scene.tracer.occluded(rays, is_hidden, Coherence::none);
     for (size_t i = 0; i < rays.size(); ++i)
       visits[visits.size() - rays.size() + i].is_hidden = is_hidden[i] != 0;
@@ -177,7 +178,7 @@ LightOutlines::LightOutlines(const PreparedScene& scene, const ViewingCamera& ca
   check_covers(scene, camera, threads);
 }
 
-// Of one pixel, sorted by lights.
+// Evaluates the visits of one pixel, which are sorted by light.
 void LightOutlines::take(const PreparedScene& scene, const ViewingCamera& camera,
                          std::span<const Visit> visits, std::vector<Shapes>& shapes) {
   uint32_t& pixel = pixels_[visits[0].pixel];
@@ -211,17 +212,17 @@ void LightOutlines::take(const PreparedScene& scene, const ViewingCamera& camera
   }
 }
 
-// Looks whether lamps are where they should be, at places that do not depend on any sample: what
-// passes before them between the points of their outlines is found so, but what covers little.
+// Tests whether lamps are visible where their outlines say, at places that are independent of all
+// samples. This finds occluders between the visited outline points, except for small ones.
 void LightOutlines::check_covers(const PreparedScene& scene, const ViewingCamera& camera,
                                  int threads) {
   constexpr int across = 4;
-  const double clear = std::max(1e-3, 2 * blur_);  // pixels from the outline
+  const double clear = std::max(1e-3, 2 * blur_);  // distance from the outline, pixels
   std::vector<uint8_t> is_wrong(pixels_.size(), 0);
   parallel_for(size_t(region_.height()), threads, [&](size_t row) {
     const int y = region_.y0 + int(row);
     std::vector<Ray> rays;
-    std::vector<uint8_t> is_lamp;  // should be
+    std::vector<uint8_t> is_lamp;  // expected result
     std::vector<Hit> hits;
     for (int x = region_.x0; x < region_.x1; ++x) {
       if (!is_known(x, y)) continue;
@@ -263,7 +264,7 @@ std::span<const LightOutlines::Piece> LightOutlines::pieces_of(const Cover& cove
   return std::span(pieces_).subspan(cover.first, cover.count);
 }
 
-// Pixels from the nearest side of a lamp's piece, > 0 within the one that the place is in.
+// Returns the signed distance in pixels to the nearest side of a lamp's piece, positive inside.
 double LightOutlines::depth_in_lamp(int x, int y, const Vec2& place) const {
   double depth = -std::numeric_limits<double>::infinity();
   for (const Piece& piece : pieces_of(covers_[pixels_[index(x, y)] - first_known]))
@@ -290,7 +291,7 @@ Rgb LightOutlines::evened(int x, int y, const Vec2& place, Rgb seen) const {
   const Cover& cover = covers_[pixel - first_known];
   Rgb sum = cover.mean;
   bool is_in_any = false;
-  const Piece* along = nullptr;  // one that shines as the ray has seen
+  const Piece* along = nullptr;  // a piece as bright as what the ray has seen
   for (const Piece& piece : pieces_of(cover)) {
     const Depth d = depth_in(corners_of(piece), Vec2d(place));
     if (std::abs(d.outline) <= blur_ && d.depth >= -blur_) {
@@ -300,7 +301,7 @@ Rgb LightOutlines::evened(int x, int y, const Vec2& place, Rgb seen) const {
       is_in_any = true;
     }
   }
-  // What another lamp sends there is not sent twice.
+  // If another lamp covers the place, its light is already subtracted.
   return along != nullptr && !is_in_any ? sum - along->radiance : sum;
 }
 

@@ -1,5 +1,6 @@
-// Outlines of the scene's lights as a camera sees them: where something small and bright meets its
-// surroundings is known before any sample is drawn, and mostly how much of a pixel it covers.
+// Outlines of lights in the picture, found by geometry before any sample is drawn. They tell in
+// which pixels a small bright light meets its surroundings, and mostly how much of the pixel it
+// covers. Used by refinement (EdgeMap) and as a control variate for visible lamps.
 #pragma once
 
 #include <cstdint>
@@ -12,50 +13,51 @@
 
 namespace troffer {
 
-// Of a lamp's flat pieces as the camera sees them the area within a pixel is exact. So what rays of
-// the pixel meet of them may be left out of their mean and the area be put in its place: a control
-// variate, by the places of rays alone. Whatever hides a lamp, or lies before it, the mean over the
-// pixel stays (but for what floats round places by along a hidden outline); the noise of the lamp's
-// outline is gone where nothing does.
+// Exact coverage of visible lamps in pixels. The area of a lamp's flat pieces within a pixel is
+// exact, so it can replace the part that rays meet. This is a control variate that depends only on
+// ray positions. It is unbiased even if something hides the lamp, apart from rounding along a
+// hidden outline. If nothing does, it removes the noise of the lamp's edge.
 class LightOutlines {
  public:
-  // knows_covers: else nothing is_known().
+  // knows_covers: if false, is_known() is false for all pixels.
   LightOutlines(const PreparedScene& scene, const ViewingCamera& camera, const PixelRect& region,
                 bool knows_covers, int threads);
 
-  // Whether an outline goes through the pixel that the camera sees directly. Disks and spheres are
-  // taken as polygons. With a lens: as seen from its middle.
+  // True if a directly visible outline passes through the pixel. Disks and spheres count as
+  // polygons. With a lens, the view is from its centre.
   bool has_outline(int x, int y) const { return pixels_[index(x, y)] != nothing; }
-  // … and of all that do, nothing is found to hide a part there, and what they cover is known:
-  // lights of one radiance all over, through no lens.
+  // True if moreover nothing hides a part of these outlines and the coverage is known. The lights
+  // must have uniform radiance, and the camera no lens.
   bool is_known(int x, int y) const { return pixels_[index(x, y)] >= first_known; }
 
-  // … but in a pixel beside it something hides what should be seen, and may do so here.
+  // True if something hides a lamp in a neighbouring pixel where it should be visible, and so may
+  // hide it here.
   bool is_doubtful(int x, int y) const { return is_doubtful_[index(x, y)] != 0; }
 
-  // A corner of a lamp, in its pixel, and whether the side from it to the next is of the outline.
+  // A corner of a lamp's piece, relative to its pixel. is_outline: the side from here to the next
+  // corner belongs to the outline.
   struct Corner {
     Vec2d at;
     bool is_outline = true;
   };
 
-  // To be added to what a ray at `place` in the pixel, in [0,1)², brings: its mean over the pixel
-  // is 0. What lamps would send on average over the pixel, less what they send along this ray, if
-  // nothing hid them; 0 where that is not known. `seen`: what the ray has found to shine: where it
-  // runs along an outline, closer than places are rounded, that tells.
+  // Returns the correction for a ray at `place` in the pixel, [0,1)²: the mean unoccluded light of
+  // lamps over the pixel, minus their light at this place. Its mean over the pixel is 0, and it is
+  // 0 where coverage is not known. `seen` is the emission that the ray has met. It decides for rays
+  // within rounding error of an outline.
   Rgb evened(int x, int y, const Vec2& place, Rgb seen) const;
 
  private:
   static constexpr uint32_t nothing = 0, unknown = 1, first_known = 2;
-  static constexpr size_t most_corners = 512;  // of a pixel: each ray looks at all
-  // Convex, within the pixel, of positive area.
+  static constexpr size_t most_corners = 512;  // per pixel: each ray tests all
+  // A convex piece within the pixel, of positive area.
   struct Piece {
     Rgb radiance;
-    uint32_t first = 0, count = 0;  // of corners_
+    uint32_t first = 0, count = 0;  // range in corners_
   };
   struct Cover {
     Rgb mean;
-    uint32_t first = 0, count = 0;  // of pieces_
+    uint32_t first = 0, count = 0;  // range in pieces_
   };
   struct Visit;
   struct Shapes;
@@ -72,8 +74,8 @@ class LightOutlines {
 
   PixelRect region_;
   bool knows_covers_;
-  double blur_;                   // pixels by which places may be rounded
-  std::vector<uint32_t> pixels_;  // from first_known on: covers_[…]
+  double blur_;                   // rounding error of positions, pixels
+  std::vector<uint32_t> pixels_;  // nothing, unknown, or first_known + index in covers_
   std::vector<Cover> covers_;
   std::vector<Piece> pieces_;
   std::vector<Corner> corners_;

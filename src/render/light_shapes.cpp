@@ -20,8 +20,8 @@ void add_loop(const Loop& loop, std::vector<OutlineEdge>& edges, float hidden_be
     edges.push_back({loop[i], loop[(i + 1) % loop.size()], hidden_before});
 }
 
-// As a polygon of the circle's area that is as round as can be told in the picture: off by less
-// than .001 pixels, unless the circle is more than 400 pixels wide.
+// Returns a polygon of the circle's area. Its sides are within .001 pixels of the circle, unless
+// the circle is more than 400 pixels wide.
 Loop circle(const Vec3& centre, const Vec3& normal, float radius, const ViewingCamera& camera) {
   constexpr float fewest = 16, most = 1024, largest_error = 0.001f;
   const Frame frame(normal);
@@ -45,7 +45,8 @@ Loop outline_of(const Disk& d, const ViewingCamera& camera) {
   return circle(d.centre, d.normal, d.radius, camera);
 }
 
-// The circle in which the cone from the eye touches the sphere; none from within.
+// Returns the circle along which the cone from the eye touches the sphere; nothing if the eye is
+// inside.
 Loop outline_of(const Sphere& s, const ViewingCamera& camera) {
   const Vec3 to_eye = camera.towards_eye(s.centre);
   const float d =
@@ -56,7 +57,8 @@ Loop outline_of(const Sphere& s, const ViewingCamera& camera) {
                 camera);
 }
 
-// Edges that one triangle has for itself, or two of which one faces the eye.
+// Adds the edges of a single triangle, and those between a triangle that faces the eye and one that
+// does not.
 void add_mesh(const Mesh& mesh, const Light& light, const ViewingCamera& camera,
               std::vector<OutlineEdge>& edges) {
   struct Side {
@@ -103,7 +105,7 @@ void add_outline(const Scene& scene, const Light& light, const ViewingCamera& ca
       break;
     case LightKind::sphere: {
       const Sphere& sphere = scene.spheres[light.geometry];
-      // Of 16 corners: rays to what lies within the circle meet the sphere up to .2 radii before.
+      // With 16 corners, a ray to a side of the polygon meets the sphere up to .2 radii before it.
       constexpr float chord = 0.25f;
       add_loop(outline_of(sphere, camera), edges, chord * sphere.radius);
       break;
@@ -117,7 +119,7 @@ void add_outline(const Scene& scene, const Light& light, const ViewingCamera& ca
     case LightKind::environment:
     case LightKind::sky:
     case LightKind::sun:
-      break;  // nothing that a camera sees has a border
+      break;  // no visible border
   }
 }
 

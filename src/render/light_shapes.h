@@ -1,4 +1,5 @@
-// Lights with a surface, as a camera has them before it: their outlines, and the pieces that shine.
+// Shapes of surface lights as a camera sees them: outlines, and the pieces that emit towards the
+// eye. Used by LightOutlines. Positions are in world space, metres.
 #pragma once
 
 #include <vector>
@@ -10,25 +11,26 @@ namespace troffer {
 
 struct OutlineEdge {
   Vec3 a, b;
-  float hidden_before = 0;  // metres before it a light may be in its own way
+  // distance before the edge within which the light may hide itself, metres
+  float hidden_before = 0;
 };
 
-// Adds the edges of a light's outline, in space. Disks and spheres are polygons that are as round
-// as can be told in the picture.
+// Adds the edges of a light's outline. Disks and spheres become polygons that are as round as the
+// picture can show.
 void add_outline(const Scene& scene, const Light& light, const ViewingCamera& camera,
                  std::vector<OutlineEdge>& edges);
 
-// A light that looks alike wherever it is seen.
+// True if the light has the same radiance everywhere and in all directions.
 bool is_even(const Light& light);
 
-// A convex polygon in space.
+// A corner of a convex polygon in space.
 struct LightCorner {
   Vec3 position;
-  bool is_outline = true;  // the side from here to the next corner is no other piece's
+  bool is_outline = true;  // the side to the next corner borders no other piece
 };
 using LightLoop = std::vector<LightCorner>;
 
-// A light's pieces that shine towards the eye.
+// Returns the pieces of a light that emit towards the eye.
 std::vector<LightLoop> shining_loops(const Scene& scene, const Light& light,
                                      const ViewingCamera& camera);
 

@@ -17,14 +17,14 @@ namespace troffer {
 
 namespace {
 
-// That a sample of a point by cells takes as long as, about.
+// Cost of one gathered sample of a measuring point, in path-traced rays; approximate.
 constexpr double rays_of_sample = 4;
 
-// What streams of random numbers are for, besides the points themselves.
+// Purposes of random streams besides the points' own.
 enum class Round : uint64_t { audit = 0, by_paths = 1, forecast = 2 };
 
-// What the method knows of errors that no spread of its samples shows, as standard errors that so
-// many draws tell.
+// Adds errors that all samples share, which their spread does not show. The factor of Student's t
+// accounts for the small number of draws.
 void add_shared_errors(std::vector<PointLight>& values) {
   const double of_draws = t_quantile_95(draws_of_noise) / 1.959964;
   for (PointLight& v : values)
@@ -85,7 +85,7 @@ GatheringPoints gathering_by(const PointPlan& plan) {
   return {plan.samples * plan.least_times, plan.samples * most_times, plan.error};
 }
 
-// A list that is measured, by whatever suits it.
+// Measures a list of points by the method, or by paths where that is better.
 class PointsMeasuring {
  public:
   PointsMeasuring(const PreparedScene& scene, const std::vector<MeasuringPlace>& places,
@@ -102,7 +102,7 @@ class PointsMeasuring {
         progress_(progress),
         stop_(stop) {}
 
-  // Empty, or not complete, where a stop came before.
+  // Returns nothing, or incomplete values, after a stop.
   PointValues values() {
     if (!needs_cells(options_.method, options_.indirect)) return measured_by_method(nullptr);
     CellInput cells{points_pilot(places_), nullptr, options_.seed, nullptr, stop_, {}, {},
@@ -128,7 +128,7 @@ class PointsMeasuring {
   }
 
  private:
-  // Cells that are asked for, or kept, are made.
+  // True unless the caller asks for cells or wants them kept.
   bool may_choose() const {
     return options_.spp == 0 && options_.cells == nullptr &&
            options_.indirect == Indirect::automatic && !places_.empty() &&
@@ -138,7 +138,7 @@ class PointsMeasuring {
     return {hash_of(options_.seed, uint64_t(round), uint64_t{0x6175'6469}), options_.threads,
             samples_of_batch_, nullptr, stop_};
   }
-  // Light straight from sources as the method has it, the rest by paths.
+  // Returns the integrator with the method's direct light and path-traced indirect light.
   const Integrator& by_paths() {
     MethodSettings settings = settings_;
     settings.measures_by_paths = true;
@@ -164,7 +164,7 @@ class PointsMeasuring {
     run.progress = progress;
     return measure_points(by_paths(), places_, plans_, run);
   }
-  // Points by cells; what cannot be trusted of them is told, or measured by paths.
+  // Audits points by cells. Adds a bias to their errors, or measures them by paths.
   void check(PointValues& found) {
     const auto finding = audit(by_paths(), places_, found.values, plan_, run_of(Round::audit));
     if (!finding) {
@@ -179,7 +179,7 @@ class PointsMeasuring {
       tell_bias(finding->bias, found.values);
       return;
     }
-    // By numbers of their own: those of the audit are why these are taken.
+    // New random numbers: those of the audit led to this decision.
     const PointValues all = measured_by_paths(nullptr);
     found.is_cut_short = !all.is_complete();
     if (!all.is_complete()) return;
@@ -193,7 +193,7 @@ class PointsMeasuring {
   const Preparation* preparation_;
   MethodSettings settings_;
   PointPlan plan_;
-  std::vector<PointPlan> plans_{plan_by_paths(plan_)};  // by paths
+  std::vector<PointPlan> plans_{plan_by_paths(plan_)};  // plans by paths
   int samples_of_batch_;
   double rays_of_audit_ = 0;
   std::unique_ptr<Integrator> by_paths_;

@@ -17,12 +17,12 @@ namespace troffer {
 
 namespace {
 
-// Stops are looked for between batches: those of scenes with many sources are smaller.
+// The program checks for stops between batches, so batches are smaller in scenes with many sources.
 constexpr int largest_batch = 4096;
 constexpr double most_rays_per_batch = 1 << 22;
-// Where direct light takes part in fewer samples than every so many-th, batches are as many times
-// as large: what certificates find out about a point serves the direct samples of a batch, and for
-// a few of them nothing is proved, so that each errs by far more than one of many.
+// If fewer than every 32nd sample includes direct light, batches grow in proportion. The proofs
+// about a point serve all direct samples of a batch. With too few of them nothing is proved, and
+// each sample is much noisier.
 constexpr int usual_samples_per_direct = 32;
 constexpr int most_times_larger = 32;
 
@@ -40,12 +40,12 @@ struct Sums {
 };
 
 struct Worker {
-  size_t point = 0;  // its number in the list
+  size_t point = 0;  // index in the list
   MeasuringPlace place;
-  SensorBatch sensors;  // of this point
+  SensorBatch sensors;  // samples of this point
   RadianceBatch out;
-  float largest_draw = 0;  // RadianceBatch::largest_draw, of all batches
-  NoiseDraws noise{};      // RadianceBatch::noise, likewise
+  float largest_draw = 0;  // maximum of RadianceBatch::largest_draw over batches
+  NoiseDraws noise{};      // sum of RadianceBatch::noise over batches
   std::unique_ptr<IntegratorScratch> scratch;
   int samples_per_batch = largest_batch;
 };
@@ -55,8 +55,8 @@ std::string name_of_sensor(const void* worker, size_t i) {
   return "point " + std::to_string(w.point) + ", sample " + std::to_string(w.sensors.samples[i]);
 }
 
-// Sums of so many samples of each set at the worker's point, set by set; cut short by a stop.
-// Batches go on from set to set: what light certificates find out about the point serves all.
+// Returns the sums over `samples` samples of each set at the worker's point; incomplete after a
+// stop. A batch may span sets, since the proofs about the point serve all of them.
 std::vector<Sums> sums_of_sets(const Integrator& integrator, uint64_t stream, int sets, int samples,
                                const StopFlag& stop, Worker& w, Counters& counters) {
   std::vector<Sums> sums(static_cast<size_t>(sets));
@@ -95,7 +95,7 @@ std::vector<Sums> sums_of_sets(const Integrator& integrator, uint64_t stream, in
   return sums;
 }
 
-// more: what its luminance errs by besides what sets tell.
+// more: error of the luminance beyond the spread of the sets.
 Measurement measurement_of(const SampleSets& sets, double lx_per_unit, double more = 0) {
   const Vec3d& e = sets.irradiance();
   return {{float(e.x), float(e.y), float(e.z)},
@@ -103,15 +103,15 @@ Measurement measurement_of(const SampleSets& sets, double lx_per_unit, double mo
           std::hypot(sets.standard_error(), more) * lx_per_unit};
 }
 
-// What the mean of so many samples of direct light errs by at least where points of sources are
-// drawn: by two of them. Where none was hidden by chance, samples do not differ; but up to three in
-// as many samples are to be expected then (the 95 % bound of none seen), and where few were,
-// numbers of samples chosen by them would prefer those that met too few.
+// Returns the least error assumed for a mean of direct light with sampled points on sources: the
+// light of two such points. If no sample was occluded by chance, samples do not differ. Up to three
+// occlusions in as many samples are plausible even then (95 % bound of none seen). Without this
+// bound, adaptive sample counts would favour points that met too few occlusions.
 double least_error_of_draws(const Worker& w, int samples) {
   return 2 * double(w.largest_draw) * double(w.sensors.samples_per_direct) / samples;
 }
 
-// What the mean of so many samples is off by for what all of them share, as draws tell.
+// Returns the error of a mean that all samples share, from its random draws.
 double error_by_noise(const NoiseDraws& noise, int samples) {
   double squares = 0;
   for (const float d : noise) squares += sqr(double(d));
@@ -148,7 +148,7 @@ PointLight measure_point(const Integrator& integrator, uint64_t stream, const Po
   return light;
 }
 
-// Places of a list, by one worker of each thread.
+// Measures places of a list, with one worker per thread.
 class Measuring {
  public:
   Measuring(const Integrator& integrator, const std::vector<MeasuringPlace>& places,
@@ -162,7 +162,7 @@ class Measuring {
 
   const PointPlan& plan(size_t i) const { return plans_[plans_.size() > 1 ? i : 0]; }
 
-  // Each of `points` by its plan of `plans`; progress goes from `begin` to `end`.
+  // Measures each of `points` by its entry of `plans`; progress goes from `begin` to `end`.
   void measure(const std::vector<size_t>& points, const std::vector<PointPlan>& plans,
                uint64_t round, double begin, double end) {
     double all = 0, done = 0;
@@ -181,7 +181,7 @@ class Measuring {
       const PointLight light =
           measure_point(integrator_, round == 0 ? stream : hash_of(stream, round), plans[k],
                         run_.stop, w, found_.counters[i]);
-      if (run_.stop.load(std::memory_order_relaxed)) return;  // its sums may have been cut short
+      if (run_.stop.load(std::memory_order_relaxed)) return;  // its sums may be incomplete
       found_.values[i] = light;
       found_.is_measured[i] = 1;
       const std::lock_guard lock(mutex);
@@ -211,9 +211,9 @@ int samples_per_batch(double rays_per_sample) {
   return int(std::clamp(most_rays_per_batch / rays_per_sample, 1.0, double(largest_batch)));
 }
 
-// The first samples of a point by cells only say how many are taken then: were they used again, a
-// sum that is small by chance, with a small error, would stay, and one that is large would not. By
-// paths, where the first are many already, that is taken into the bargain.
+// First samples of a point by cells only determine the final sample count and are discarded.
+// Reusing them would be biased: sums that are small by chance have small errors and would be kept.
+// Paths begin with many samples, so the bias is accepted there.
 PointValues measure_points(const Integrator& integrator, const std::vector<MeasuringPlace>& places,
                            std::span<const PointPlan> plans, const PointsRun& run) {
   constexpr double share_of_first = 0.25;  // of the time, about
@@ -236,7 +236,7 @@ PointValues measure_points(const Integrator& integrator, const std::vector<Measu
   which.clear();
   const std::vector<PointPlan> enough = enough_for(found.values, own, run.spare_samples);
   for (size_t i = 0; i < points; ++i) {
-    // as planned, or nothing more is allowed
+    // nothing more is needed or allowed
     if (enough[i].samples == first[i].samples &&
         enough[i].samples_per_direct == first[i].samples_per_direct)
       continue;

@@ -1,4 +1,6 @@
-// Points measured by one integrator: the samples that a plan wants, and what they bring.
+// Measurement of a list of points by one integrator: samples by plan, a second round where the
+// error needs it, and standard errors from independent sets. Used by measure(), its audit and its
+// forecast. Illuminance is in lux.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +26,7 @@ struct PointValues {
   std::vector<PointLight> values;
   std::vector<uint8_t> is_measured;
   std::vector<Counters> counters;
-  bool is_cut_short = false;  // all are measured, but not all is done that was to be
+  bool is_cut_short = false;  // all points are measured, but a later step was skipped by a stop
 
   bool is_complete() const {
     return std::all_of(is_measured.begin(), is_measured.end(), [](uint8_t m) { return m != 0; });
@@ -32,9 +34,9 @@ struct PointValues {
   Counters all_counters() const;
 };
 
-// Each place by its plan, or all by one, and once more, by as many samples as that wants, where its
-// error is larger than planned; by streams named by the seed and its number. Stops between batches:
-// places that were not finished are not measured.
+// Measures each place by its plan, or all by a single one. A second round measures places whose
+// error is too large with as many samples as they need. Random streams derive from the seed and the
+// index of the place. Stops between batches; unfinished places do not count as measured.
 PointValues measure_points(const Integrator& integrator, const std::vector<MeasuringPlace>& places,
                            std::span<const PointPlan> plans, const PointsRun& run);
 
@@ -44,11 +46,11 @@ inline PointValues measure_points(const Integrator& integrator,
   return measure_points(integrator, places, std::span(&plan, 1), run);
 }
 
-// Batches of an integrator that asks for so many shadow rays per sample, so that a stop is soon
-// heard.
+// Returns the batch size for an integrator with this many shadow rays per sample, small enough for
+// a quick response to stops.
 int samples_per_batch(double rays_per_sample);
 
-// Root mean square of one part's standard errors, relative to all light.
+// Returns the root mean square of one part's standard errors, relative to all light.
 double relative_error(const std::vector<PointLight>& points, Measurement PointLight::*part);
 
 }  // namespace troffer

@@ -1,4 +1,5 @@
-// Measured points as a table.
+// Measurements as a CSV table, as the command measure and the viewer write it. Positions are in the
+// file's coordinates, light is in W/m² and lx.
 #pragma once
 
 #include <string>
@@ -8,11 +9,11 @@
 
 namespace troffer {
 
-// A line of names, and one for each point: where it lies, its normal, irradiance (W/m²),
-// illuminance and its standard error (lx). For the shorter of both lists.
+// Returns a header and one row per point: position, normal, irradiance (W/m²), illuminance and its
+// standard error (lx). Stops at the end of the shorter list.
 std::string measurements_csv(const std::vector<MeasuringPoint>& points,
                              const std::vector<Measurement>& values);
-// Points that were not measured are left out.
+// The same, without points that were not measured.
 std::string measurements_csv(const std::vector<MeasuringPoint>& points,
                              const MeasureResult& result);
 

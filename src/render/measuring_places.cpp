@@ -11,17 +11,17 @@ namespace troffer {
 
 namespace {
 
-// A corner of three walls has as many surfaces.
+// A corner of three walls has three surfaces.
 constexpr int most_moves = 3;
-// Surfaces less steep than this to a point's plane are its own.
+// Surfaces at a smaller angle to the point's plane count as the point's own.
 constexpr float least_sine = 0.05f;
 
-// A surface that a place stands in: its unit normal. Rays along the place's plane, both ways along
-// two axes, meet it at once: whatever its direction, one of the axes leads out of it, and of its
-// two ways one starts, by rounding, on the surface or before it.
+// Finds another surface that passes through a place, and its unit normal. Short rays in the place's
+// plane, along two axes in both directions, would hit it. At least one axis crosses any such
+// surface, and one of its two rays starts on or before it, whatever the rounding.
 bool surface_through(const PreparedScene& scene, const MeasuringPlace& place, Vec3& normal) {
   const Frame frame(place.normal);
-  const float reach = place.offset / 16;  // a few roundings of the coordinates
+  const float reach = place.offset / 16;  // some rounding errors of the coordinates
   std::array<Ray, 4> rays;
   for (size_t k = 0; k < rays.size(); ++k) {
     rays[k].origin = place.position + place.normal * place.offset;

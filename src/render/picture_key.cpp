@@ -8,7 +8,7 @@ namespace troffer {
 
 namespace {
 
-// Beside what radiosity sees of a scene, what pictures show.
+// Adds to the radiosity key what only pictures depend on.
 uint64_t hash_of_scene(const Scene& scene) {
   Hasher h(1);
   h.add(radiosity_scene_key(scene));

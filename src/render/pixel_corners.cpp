@@ -15,7 +15,7 @@ bool SeenPlace::is_of_surface_of(const SeenPlace& o) const {
   if (geometry == no_geometry) return true;
   if (is_front != o.is_front || dot(normal, o.normal) < cos_same_way) return false;
   const Vec3 d = o.position - position, size = abs(position);
-  // Where they are the same but for rounding, d has no direction.
+  // The positions are equal but for rounding, so d has no direction.
   if (length(d) <= ray_offset(std::max({size.x, size.y, size.z}))) return true;
   return std::abs(dot(d, normal)) <= sin_step * length(d) ||
          std::abs(dot(d, o.normal)) <= sin_step * length(d);
@@ -24,8 +24,8 @@ bool SeenPlace::is_of_surface_of(const SeenPlace& o) const {
 PixelCorners::PixelCorners(const PreparedScene& scene, const ViewingCamera& camera,
                            const PixelRect& region, int threads)
     : region_(region), columns_(size_t(region.width()) + 1) {
-  // Where a ray runs into an edge, which of its two surfaces it meets may depend on the packet in
-  // which it is traced: packets are those of the whole picture, whatever the region.
+  // The surface that a ray along an edge meets may depend on its packet. Packets are therefore
+  // aligned to the whole picture, whatever the region.
   constexpr size_t packet = 16;
   const size_t rows = size_t(region.height()) + 1;
   const size_t before = size_t(region.x0) % packet,
@@ -54,7 +54,7 @@ PixelCorners::PixelCorners(const PreparedScene& scene, const ViewingCamera& came
 bool PixelCorners::differ(int x, int y) const {
   const SeenPlace* c = &of(x, y);
   const std::array<const SeenPlace*, 4> four{c, c + 1, c + columns_, c + columns_ + 1};
-  // All six pairs: what is alike need not be so by way of a third.
+  // All six pairs, since similarity is not transitive.
   for (size_t i = 0; i < 4; ++i)
     for (size_t j = i + 1; j < 4; ++j)
       if (!four[i]->is_of_surface_of(*four[j])) return true;

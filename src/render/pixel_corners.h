@@ -1,4 +1,5 @@
-// What rays through the corners of pixels meet.
+// Surfaces seen through the corners of pixels, one ray per corner. EdgeMap and the search for
+// sub-pixel features compare them. Positions are in world space, metres.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +11,14 @@
 
 namespace troffer {
 
-// A place that is seen.
+// A visible surface point.
 struct SeenPlace {
   uint32_t geometry = no_geometry;
   bool is_front = true;
-  Vec3 normal, position;  // the normal as shaded, on the viewer's side
+  Vec3 normal, position;  // shading normal, on the viewer's side
 
-  // The same object, facing about the same way (within 25 degrees, as is_same_surface of
-  // shadow_record.h), and no step from one to the other.
+  // True if both are on the same object, with normals within 25 degrees (like is_same_surface of
+  // shadow_record.h) and no step in depth between them.
   bool is_of_surface_of(const SeenPlace& other) const;
 };
 
@@ -26,9 +27,9 @@ class PixelCorners {
   PixelCorners(const PreparedScene& scene, const ViewingCamera& camera, const PixelRect& region,
                int threads);
 
-  // Of a pixel of the region: the upper left one.
+  // Returns the upper left corner of a pixel of the region.
   const SeenPlace& of(int x, int y) const { return corners_[index(x, y)]; }
-  // They see more than one surface.
+  // True if the corners of the pixel see more than one surface.
   bool differ(int x, int y) const;
 
  private:

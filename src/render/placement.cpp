@@ -16,16 +16,16 @@ namespace troffer {
 namespace {
 
 constexpr size_t places_tried = 64, rays_of_place = 32;
-// Most rays from a closed room's middle meet fronts, and few leave by openings. A room of
-// 5 x 4 x 2.7 m without its ceiling has .22 of them open.
+// Thresholds for a closed room: from its middle most rays meet fronts and few leave through
+// openings. For comparison, in a room of 5 × 4 × 2.7 m without its ceiling the share of open rays
+// is .22.
 constexpr double least_fronts = 0.65, most_open = 0.12;
-// From outside of a room half of all directions are open, from its inside hardly any.
+// From just outside of a room half of all directions are open; inside hardly any are.
 constexpr double open_outside = 0.4;
-// Within a body most directions meet the back of a surface; the floor that it stands on shows its
-// front.
+// Inside a body most directions meet the back of a surface; the floor below it shows its front.
 constexpr double hidden_share = 0.7;
 
-// Shares of the rays from one place, by what they meet.
+// Rays from one place, counted by what they meet.
 struct Outlook {
   double fronts = 0, backs = 0, open = 0, rays = 0;
 
@@ -75,7 +75,7 @@ bool is_luminaire(const Light& e) {
   return e.web != no_web;
 }
 
-// The scene without the bodies of measured luminaires.
+// Returns the bounds without the bodies of luminaires.
 Box bounds_of_room(const Scene& scene) {
   std::set<std::string> luminaires;
   for (const Light& e : scene.lights)
@@ -89,7 +89,7 @@ Box bounds_of_room(const Scene& scene) {
   return box;
 }
 
-// Empty where the scene is no closed room.
+// Returns the bounds of the room; empty if the scene is not a closed room.
 Box closed_room(const PreparedScene& scene) {
   const Box box = bounds_of_room(scene.scene);
   if (box.is_empty()) return {};
@@ -112,7 +112,7 @@ bool lies_beyond(const Box& box, const Vec3& p) {
   return false;
 }
 
-// Where a light is, and rays in the directions into which it shines.
+// Position of a light, and rays in its directions of emission.
 struct Emission {
   Vec3 place;
   std::vector<Ray> rays;
@@ -248,7 +248,7 @@ std::vector<std::string> misplaced_points(const PreparedScene& scene,
     add_sphere_rays(place - normal * off, rays_of_place, random, back.rays);
     const Outlook o = outlook(scene, lit.rays), before = outlook(scene, front.rays),
                   behind = outlook(scene, back.rays);
-    // A point on the inside of a wall that faces outward is not outside.
+    // An outward-facing point on the inner face of a wall is not outside.
     const double open = std::min(before.share(before.open), behind.share(behind.open));
     if (!room.is_empty() && open >= open_outside) outside.push_back(number);
     if (o.share(o.backs) >= hidden_share) hidden.push_back(number);

@@ -1,6 +1,6 @@
-// Points and luminaires that stand where they cannot be meant to: outside of a closed room, or
-// within a body. A list with z up beside a scene with y up makes many of them. Used by the commands
-// that take lists of points and of luminaires.
+// Detection of misplaced points and luminaires: outside of a closed room, or inside a body. A list
+// with z up for a scene with y up produces many. Used by the commands that read lists of points and
+// of luminaires.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@
 
 namespace troffer {
 
-// One sentence for each kind of place, which names the luminaires; none where all is well. Lights
-// outside of a closed room count, and measured luminaires whose light is hidden where they hang.
+// Returns one sentence for each kind of misplacement that names the luminaires, or nothing. Reports
+// lights outside of a closed room, and luminaires whose light is blocked where they hang.
 std::vector<std::string> misplaced_luminaires(const PreparedScene& scene);
 
-// The same of points, by their numbers from 1: those outside of a closed room, and those that no
-// light reached (`result`) because they lie within a body.
+// The same for points, by numbers from 1: points outside of a closed room, and points inside a body
+// that received no light (`result`).
 std::vector<std::string> misplaced_points(const PreparedScene& scene,
                                           const std::vector<MeasuringPoint>& points,
                                           const MeasureResult& result);

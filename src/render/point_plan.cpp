@@ -10,16 +10,16 @@ namespace troffer {
 
 namespace {
 
-// One of a point's two parts, with errors times the root of the point's weight, over the aim: all
-// of a list together are to be 1 in the mean square over points.
+// One of the two parts of a point's light. Errors are weighted by the root of the point's weight
+// and divided by the aim, so that the mean square over all points should be 1.
 struct Part {
-  double error = 0;  // falls with the root of the number of samples
-  double least = 0;  // falls with their number; asked of each point by itself
+  double error = 0;  // standard error, falls with the root of the sample count
+  double least = 0;  // least error, falls with the sample count; each point must meet it by itself
   double samples = 0, most_times = 1;
-  double times = 1;  // as many samples, at least
+  double times = 1;  // least factor on the sample count
 
   double variance(double t) const { return sqr(error) / t; }
-  // How many times as many samples, where a sample may bring so much.
+  // Returns the factor on the sample count at a given scale (a logarithm), as a power of two.
   double times_by(double log_of_scale) const {
     if (!(error > 0)) return times;
     const double wanted = std::round(log_of_scale + std::log2(error / std::sqrt(samples)));
@@ -28,7 +28,7 @@ struct Part {
 };
 
 struct PlannedPoint {
-  Part often, seldom;  // seldom: of no error where direct light takes part in all samples
+  Part often, seldom;  // error of `seldom` is 0 if all samples include direct light
   double variance_of_most = 0, shared_variance = 0;
 };
 
@@ -41,7 +41,7 @@ bool is_for_more(const PointLight& found, const PointPlan& plan) {
          std::isfinite(found.all.standard_error) && found.all.standard_error > 0;
 }
 
-// As many samples as no point goes without.
+// Sets the factors that this point needs by itself, whatever the others are.
 void ask_for_least(const PointLight& found, const PointPlan& plan, double lx, PlannedPoint& p) {
   const double own = plan.error * found.all.illuminance_lx / lx, aim = most_of_one_point * own;
   Part &often = p.often, &seldom = p.seldom;
@@ -56,7 +56,8 @@ void ask_for_least(const PointLight& found, const PointPlan& plan, double lx, Pl
 
 PlannedPoint planned(const PointLight& found, const PointPlan& plan, double mean_lx) {
   const double own_lx = found.all.illuminance_lx;
-  const double lx = plan.error / std::sqrt(0.5 / sqr(own_lx) + 0.5 / sqr(mean_lx));  // that is 1
+  // lux that count as 1
+  const double lx = plan.error / std::sqrt(0.5 / sqr(own_lx) + 0.5 / sqr(mean_lx));
   PlannedPoint p;
   p.often.samples = plan.samples;
   p.seldom.samples = double(plan.samples) / plan.samples_per_direct;
@@ -75,10 +76,10 @@ PlannedPoint planned(const PointLight& found, const PointPlan& plan, double mean
   return p;
 }
 
-// All points, by scales of how many samples they get; their logarithms.
+// Logarithms of scales; the scale fixes the sample counts of all points.
 constexpr double least_of_scale = -100;
-// What as many samples as are allowed leave of a point's variance, and a little more: or parts that
-// hardly err were to have as many as those that do.
+// Returns the variance that remains with the largest allowed sample count, plus a margin. Without
+// the margin, parts of little error would get as many samples as noisy ones.
 double nearly_most(const PlannedPoint& p) {
   return p.variance_of_most + 0.1 * std::min(p.variance_of_most, 1.0);
 }
@@ -88,18 +89,18 @@ class PlannedList {
   void add(const PlannedPoint& p) { points_.push_back(p); }
   const std::vector<PlannedPoint>& points() const { return points_; }
 
-  // What all are to err by; where samples are bounded, what can be.
+  // Returns the allowed sum of variances, or what is reachable if sample counts are limited.
   double variance_allowed(double of_point) const {
     double sum = 0;
     for (const PlannedPoint& p : points_) sum += std::max(of_point, nearly_most(p));
     return sum;
   }
-  // The scale by which they err by no more than that.
+  // Returns the least scale at which the variance is within `allowed`.
   double scale_for(double allowed) const {
     return least_scale([&](double scale) { return variance(scale) <= allowed; });
   }
-  // That by which so many samples are taken, but no larger than what makes them err by what all
-  // samples share.
+  // Returns the scale at which this many samples are taken, but no larger than where the error
+  // reaches that which all samples share.
   double scale_by(double samples_in_all) const {
     double shared = 0;
     for (const PlannedPoint& p : points_) shared += std::max(p.shared_variance, nearly_most(p));
@@ -123,7 +124,7 @@ class PlannedList {
         sum += part->samples * part->times_by(log_of_scale);
     return sum;
   }
-  // By which something holds that does so for all larger ones.
+  // Returns the least scale that fulfils a monotonic condition.
   template <typename Condition>
   static double least_scale(const Condition& holds) {
     double low = least_of_scale, high = -least_of_scale;

@@ -1,5 +1,5 @@
-// How many samples the measured points of a list get, and how much of them is light straight from
-// sources.
+// Allocation of samples to the measuring points of a list, and to direct light within them. Used by
+// measure_points() and the forecast. Errors are standard errors in lux, aims are relative.
 #pragma once
 
 #include <span>
@@ -9,59 +9,65 @@
 
 namespace troffer {
 
-// Light straight from sources, the rest, and both together, whose error is less than their errors'
-// sum where these have to do with each other.
+// Measured light of a point: all of it, direct light, and indirect light. The parts may be
+// correlated, so errors need not add in quadrature.
 struct PointLight {
   Measurement all, direct, indirect;
-  // Standard errors, lx, of what takes part in every so many-th sample alone (`direct`, and what
-  // mirrors bring of it), and of the rest.
+  // Standard errors, lx. seldom: light that only every samples_per_direct-th sample includes, which
+  // is direct light and its mirror images. often: all other light.
   double seldom_error = 0, often_error = 0;
-  double least_error = 0;  // of `direct`, lx, by points drawn of sources: falls as samples grow
+  // least error of `direct` with sampled points on sources, lx; falls with the sample count
+  double least_error = 0;
   double shared_error =
-      0;                // lx, by what all samples share (RadianceBatch::noise); not in the others
-  double kurtosis = 3;  // SampleSets::kurtosis, of `indirect`
-  int samples = 0;      // that told it
+      // error that all samples share (RadianceBatch::noise), lx; not part of the others
+      0;
+  double kurtosis = 3;  // SampleSets::kurtosis of `indirect`
+  int samples = 0;      // number of samples behind these values
 };
 
-// Lists whose usual samples err by more than this share of the allowed error get more of them.
+// A list whose usual samples err by more than this share of the error asked for gets more.
 constexpr double share_of_error = 0.25;
-// No point of a list is to err by more than so many times what all of them do.
+// Largest error of one point of a list, as a multiple of the list's aim.
 constexpr double most_of_one_point = 2;
 
 struct PointPlan {
   int samples;
   int samples_per_estimate;
-  int samples_per_direct = 1;  // of those, as SensorBatch has it; divides those of a set
-  double error = 0;            // relative, that is aimed at; 0: so many samples do
-  double tolerance = 1;        // so many times that is well, since samples were chosen for it
+  int samples_per_direct = 1;  // every so many-th sample includes direct light (SensorBatch)
+  double error = 0;            // relative error aimed at; 0: exactly `samples` samples
+  // factor on `error` that is accepted, since the samples were chosen for it
+  double tolerance = 1;
   double lx_per_unit = 1;
-  // For that, so many times as many samples are taken, at least and at most; of how many is found
-  // out by so many times as many, which serve for nothing else where they are fewer than at least.
+  // Factors on `samples`: for the first look, and the least and the most for the result. If the
+  // first look has fewer samples than the least, it only determines the sample count.
   double first_times = 1, least_times = 1, most_times = 128;
 };
 
 struct SamplesWanted {
   double all = 0;
-  double direct = 0;  // of those, with direct light
+  double direct = 0;  // number of those that include direct light
 };
 
-// As many samples of each point as bring the errors of a list down to what its plans, by which
-// `found` was measured, aim at. An error counts by the mean of its squares over the point's own
-// light and over the list's mean: all points together are to err by no more than the aim, and no
-// point by more than about twice that of its own light, so far as samples tell. Of all numbers of
-// samples that are enough, these are about the least: n in proportion to the standard deviation of
-// a sample times the root of its weight (Neyman's allocation), of either part of the light, as far
-// as plans allow, and not fewer than before. All are powers of two times those of the plans. Points
-// without light keep their plans. spare: so many samples, of all points, are taken anyway, beside
-// something that takes far longer, or as many as bring errors down to what all samples share.
+// Returns the sample counts with which a list meets the aim of its plans; `found` holds its values
+// by these plans. Half of a point's weight is relative to its own light, half relative to the
+// list's mean. The root mean square over all points must not exceed the aim, nor a point about
+// twice the aim at its own light.
+//
+// Among such counts these are about the least: n is proportional to the standard deviation of a
+// sample times the root of its weight (Neyman allocation). This holds per part of the light and
+// within the limits of the plans. All counts are a plan's times a power of two, at least 1. Points
+// without light keep their plans.
+//
+// spare: number of samples over all points that cost little compared to other work and are taken
+// anyway. They are limited to what brings errors down to those that all samples share.
 std::vector<SamplesWanted> samples_wanted(std::span<const PointLight> found,
                                           std::span<const PointPlan> plans, double spare = 0);
 
-// The plan by which it is found out how many samples a point wants.
+// Returns the plan of the first look, which determines how many samples a point needs.
 PointPlan first_of(PointPlan plan);
 
-// The plans with as many samples as they want by what was `found` with first_of() them. Where
-// direct light takes part in some of the samples alone, of either as many as are wanted.
+// Returns the plans with the sample counts that `found`, measured by first_of() of them, asks for.
+// The number of samples with direct light is chosen separately.
 std::vector<PointPlan> enough_for(std::span<const PointLight> found, std::vector<PointPlan> plans,
                                   double spare = 0);
 

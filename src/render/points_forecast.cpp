@@ -10,17 +10,17 @@ namespace troffer {
 
 namespace {
 
-// Of each point that is looked at: enough to tell its noise by.
+// Per point of the look; enough for an estimate of its noise.
 constexpr int samples_looked_at = 1024;
-// Samples chosen by so few are taken anew only where these were misled.
+// Sample counts come from a short look, so points are measured again only if it was misleading.
 constexpr double tolerance = 1.5;
-// About the least that a point by cells takes, in rays of paths, besides its audit.
+// Least cost of a point by cells without its audit, in rays of paths; approximate.
 constexpr double rays_of_point = 4e4;
-// … and what their making takes in a scene of which nothing is known: 3 to 20 million in four rooms
-// and halls, 180 to 360 for each cell (rays_of_made_cell).
+// Cost of making cells in an unknown scene, in rays. Measured in four rooms and halls: 3 to 20
+// million, or 180 to 360 per cell (rays_of_made_cell).
 constexpr double rays_of_cells = 7e6;
 
-// Of each point, as many as bring the errors down to what is aimed at, were they allowed.
+// Returns the sample counts that the aim needs without a limit.
 std::vector<double> samples_at_will(const std::vector<PointLight>& found,
                                     std::vector<PointPlan> plans) {
   constexpr double at_will = 0x1p40;
@@ -28,7 +28,7 @@ std::vector<double> samples_at_will(const std::vector<PointLight>& found,
   const std::vector<SamplesWanted> wanted = samples_wanted(found, plans);
   std::vector<double> samples;
   for (size_t i = 0; i < found.size(); ++i)
-    // Where so few find no light, it may be that hardly any would.
+    // So few samples without light may mean that hardly any sample finds it.
     samples.push_back(found[i].all.illuminance_lx > 0 ? wanted[i].all
                                                       : std::numeric_limits<double>::infinity());
   return samples;
@@ -52,7 +52,8 @@ std::optional<PointsForecast> forecast_points(const Integrator& paths,
   PointPlan look = plan;
   look.samples = std::min(plan.samples, samples_looked_at);
   look.samples_per_direct =
-      std::max(plan.samples_per_direct * look.samples / plan.samples, 1);  // as many in all
+      // the same number with direct light
+      std::max(plan.samples_per_direct * look.samples / plan.samples, 1);
   look.error = 0;
   const PointValues few = measure_points(paths, at, look, run);
   if (!few.is_complete()) return std::nullopt;
@@ -72,11 +73,11 @@ std::optional<PointsForecast> forecast_points(const Integrator& paths,
     f.samples += std::max(at_will[i], double(own.samples)) / double(few.values.size());
   }
   const double samples = double(look.samples) * double(few.values.size());
-  // A ray to the next surface, and one from there to a light.
+  // one ray to the next surface and one from there to a light
   const double rays_of_sample = 2 * double(few.all_counters().extension_rays) / samples;
   const auto points = double(places.size());
   f.rays = rays_of_sample * f.samples * points;
-  // The audit takes as many paths of a point as a plan by paths begins with.
+  // The audit takes as many paths per point as a plan by paths begins with.
   f.rays_of_audit = rays_of_sample * plan.samples * double(at.size());
   f.rays_for_cells = f.rays - rays_of_point * points - f.rays_of_audit;
   return f;

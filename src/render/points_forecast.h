@@ -1,8 +1,8 @@
-// What a list of points would take by paths, from a look at a few of them; and whether that is less
-// than cells and their audit would take (docs/measure.md, "Short lists").
+// Forecast of the cost of measuring a list by paths, from a look at a few points, and the choice
+// between paths and cells (docs/measure.md, "Short lists").
 //
-// Work is counted in rays, never in seconds: the same choice on every machine and for any number of
-// threads.
+// Cost is counted in rays, not seconds, so that the choice is the same on every machine and for any
+// number of threads.
 #pragma once
 
 #include <optional>
@@ -12,26 +12,26 @@
 
 namespace troffer {
 
-// That a cell's making takes as long as, about.
+// Cost of making one cell, in path-traced rays; approximate (180 to 360 measured in four scenes).
 constexpr double rays_of_made_cell = 200;
 
 struct PointsForecast {
-  std::vector<PointPlan> plans;  // of the points that were looked at: all of a short list
-  double samples = 0;            // of a point, on average, as many as the error wants
-  double rays = 0;               // of all kinds, for all points
-  double rays_of_audit = 0;      // that points by cells take besides
-  // What else the list would take that much for: cells' making, in rays. Negative: paths take less
-  // than points by cells do even if cells cost nothing.
+  std::vector<PointPlan> plans;  // plans of the points looked at: all points of a short list
+  double samples = 0;            // mean number per point that the error asks for
+  double rays = 0;               // cost by paths, for all points
+  double rays_of_audit = 0;      // further cost of the audit that cells need
+  // Budget for making cells, in rays, at which cells and paths cost the same. Negative if paths win
+  // even against cells that cost nothing.
   double rays_for_cells = 0;
 
-  // Whether cells would take more than that, as far as can be told beforehand.
+  // True if making cells is expected to exceed the budget.
   bool is_for_paths() const;
-  // If not: more of them than these would.
+  // Returns the number of cells at which the budget is spent.
   double most_cells() const;
 };
 
-// paths: certified light straight from sources, the rest by paths. plan: how points would be
-// measured by them. Empty where a stop came before.
+// Forecasts by a look at a few points. paths: integrator with certified direct light and
+// path-traced indirect light. plan: the plan for measuring by it. Returns nothing after a stop.
 std::optional<PointsForecast> forecast_points(const Integrator& paths,
                                               const std::vector<MeasuringPlace>& places,
                                               const PointPlan& plan, const PointsRun& run);

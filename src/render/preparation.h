@@ -1,5 +1,5 @@
-// What methods that stand on the radiosity preprocessing need before the first viewing ray: it, and
-// the selection of sources.
+// Preparation of methods that need the radiosity preprocessing (kj92): the solution and the source
+// selection. Made once before the first viewing ray and shared by all integrators of a scene.
 #pragma once
 
 #include <memory>
@@ -29,21 +29,22 @@ struct Preparation {
   double seconds = 0;
 };
 
-// Solves the radiosity of the scene, or takes `solution` (which must be the scene's), and selects
-// sources. Null where the method needs nothing (needs_radiosity), and once `stop` is set.
+// Solves the radiosity of the scene, or takes `solution`, which must belong to it, and selects
+// sources. Returns null if the method needs no preparation (needs_radiosity) or `stop` is set.
 std::unique_ptr<Preparation> prepare(const PreparedScene& scene, Method method,
                                      const Kj92Settings& settings, Indirect indirect,
                                      std::optional<RadiositySolution> solution, int threads,
                                      const ProgressCallback& progress, const StopFlag& stop);
 
-// preparation, cells: may be null where the method needs none (needs_radiosity, needs_cells); the
-// preparation must outlive the integrator, as must scene. Null where CellInput::stop was set.
+// Makes the integrator of a method. preparation and cells may be null if the method does not need
+// them (needs_radiosity, needs_cells). Scene and preparation must outlive the integrator. Returns
+// null if CellInput::stop was set.
 std::unique_ptr<Integrator> make_integrator(const PreparedScene& scene, Method method,
                                             const MethodSettings& settings,
                                             const Preparation* preparation, CellInput* cells);
 
-// Numbers of the scene's lights that have one of these names, for SelectionOptions::only.
-// UsageError names one that does not exist.
+// Returns the indices of lights with one of these names, for SelectionOptions::only. Throws
+// UsageError for a name that does not exist.
 std::vector<uint32_t> lights_named(const Scene& scene, const std::vector<std::string>& names);
 
 }  // namespace troffer

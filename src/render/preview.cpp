@@ -19,7 +19,7 @@ namespace {
 constexpr uint32_t paths_of_block = 4;
 constexpr double interval_per_showing = 10;
 
-// The window in square blocks of pixels, those at its right and lower border smaller.
+// The window in square blocks of pixels; those at its right and lower border may be smaller.
 struct Blocks {
   PixelRect window;
   int side = 1;
@@ -27,7 +27,7 @@ struct Blocks {
   int down() const { return (window.height() + side - 1) / side; }
 };
 
-// Rays through a block, spread over it.
+// Adds rays spread over a block.
 void add_block_rays(const ViewingCamera& camera, const Blocks& blocks, int i, int j, uint64_t seed,
                     ViewingRays& rays) {
   const uint64_t stream = hash_of(seed, uint64_t(i), uint64_t(j));
@@ -45,13 +45,13 @@ void add_block_rays(const ViewingCamera& camera, const Blocks& blocks, int i, in
   }
 }
 
-// What paths through the blocks bring, and what they meet first.
+// Results per block: mean light and albedo of its paths, and the sum of the normals.
 struct Values {
   Image light, albedo;
-  std::vector<Vec3> normals;  // sums; zero: nothing was met
+  std::vector<Vec3> normals;  // zero if nothing was hit
 };
 
-// False where it was stopped.
+// Returns false if it was stopped.
 bool sample(const Integrator& integrator, const ViewingCamera& camera, const Blocks& blocks,
             const RenderOptions& options, const StopFlag& stop, Values& values) {
   struct Work {
@@ -64,7 +64,7 @@ bool sample(const Integrator& integrator, const ViewingCamera& camera, const Blo
   std::vector<Work> work(size_t(thread_count(options.threads)));
   values = {Image(blocks.across(), blocks.down()), Image(blocks.across(), blocks.down()), {}};
   values.normals.assign(values.light.pixels.size(), Vec3{});
-  // Between these a stop is looked for: whoever turns around in a room waits for no more than one.
+  // The unit between checks for a stop, small for a quick response when the user turns the view.
   constexpr int blocks_at_once = 32;
   const auto across = size_t((blocks.across() + blocks_at_once - 1) / blocks_at_once);
   parallel_for_slots(across * size_t(blocks.down()), options.threads, [&](size_t n, size_t slot) {
@@ -91,8 +91,8 @@ bool sample(const Integrator& integrator, const ViewingCamera& camera, const Blo
   return !stop.load(std::memory_order_relaxed);
 }
 
-// Noise evened out between neighbours that face the same way: what arrives, not what they make of
-// it. Blocks that shine (or are noise far above the mean) are told apart from the others.
+// Smooths the incident light (light / albedo) over neighbours with similar normals. Blocks that
+// emit, or whose noise is far above the mean, do not mix with others.
 Image smoothed(const Values& v) {
   constexpr float dark = 0.02f;
   constexpr double shining = 16;
@@ -130,12 +130,12 @@ Image smoothed(const Values& v) {
   return out;
 }
 
-// Linear between the middles of blocks.
+// Interpolates linearly between the centres of blocks.
 Image spread(const Image& values, const Blocks& blocks) {
   Image image(blocks.window.width(), blocks.window.height());
   struct Between {
     int low, high;
-    float share;  // of high
+    float share;  // weight of `high`
   };
   const auto between = [&](int pixel, int count) {
     const float at = (float(pixel) + 0.5f) / float(blocks.side) - 0.5f;
@@ -164,7 +164,7 @@ void Preview::sight(const Scene& scene, const Camera& camera, const RenderOption
   if (triangle_count(scene) <= few_triangles && !waits_for_images) return;
   const ImageSize size = image_size(camera, options.width, options.height);
   const PixelRect window = wanted_window(options, size.width, size.height);
-  constexpr double most_pixels = 1 << 26;  // more may be refused soon (check_options)
+  constexpr double most_pixels = 1 << 26;  // larger pictures are refused later (check_options)
   if (double(window.width()) * window.height() > most_pixels) return;
   const ViewingCamera viewing(camera, size.width, size.height);
   show(first_sight(scene, viewing, window, options.threads));
@@ -187,7 +187,7 @@ void Preview::look(const PreparedScene& scene, const Camera& camera, const Rende
     if (!sample(*paths, viewing, blocks, options, stop, values)) break;
     const bool is_first = image_.pixels.empty();
     image_ = spread(smoothed(values), blocks);
-    // The next one has four times as many blocks.
+    // The next step has four times as many blocks.
     const Clock::time_point done = Clock::now();
     const bool is_last = side == 1 || done + 4 * (done - start) > end;
     if (is_first || is_last) show(image_);

@@ -1,4 +1,5 @@
-// Pictures of a rendering that is not done yet: a coarse one at once, then what is finished so far.
+// Preview of a rendering in progress: a coarse picture at once, then the picture so far. Used by
+// the commands render and view. The final picture does not depend on it.
 #pragma once
 
 #include <chrono>
@@ -12,41 +13,40 @@
 
 namespace troffer {
 
-// How soon pictures follow each other, and what the first ones take.
+// Time and detail of previews.
 struct PreviewPace {
-  // Seconds from one picture to the next; more where showing one takes longer than a tenth of it.
+  // Seconds from one picture to the next; more if showing one takes longer than a tenth of it.
   double interval = 2;
-  double look_seconds = 0.8;  // of look(), about
-  int first_blocks = 64;      // of the first picture, along its longer side
+  double look_seconds = 0.8;  // approximate duration of look()
+  int first_blocks = 64;      // blocks of the first picture along its longer side
 };
 
-// None of it changes the picture that is made in the end.
+// Shows pictures of unfinished work. Only update() may be called concurrently.
 class Preview {
  public:
-  // Gets what is to be shown, of the size of the window that is rendered; called from one thread at
-  // a time, whichever it is.
+  // Receives the picture to show, of the size of the rendered window. Called from one thread at a
+  // time, but not always the same.
   using Show = std::function<void(const Image&)>;
   explicit Preview(Show show, const PreviewPace& pace = {}) : show_(std::move(show)), pace_(pace) {}
 
-  // Of a scene for which a tracer takes a while to build, or for which images are yet to be read,
-  // at once: a grey picture (first_sight.h).
+  // Shows a grey picture at once (first_sight.h) if building a tracer takes a while or images are
+  // still to be read.
   void sight(const Scene& scene, const Camera& camera, const RenderOptions& options,
              bool waits_for_images);
 
-  // A coarse picture by few paths: shown as soon as there is one, and again when it has become as
-  // fine as about a second allows. The options must be fine (check_options).
+  // Shows a coarse picture by few paths as soon as there is one, and a finer one after about
+  // PreviewPace::look_seconds. The options must be valid (check_options).
   void look(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,
             const StopFlag& stop);
 
-  // In place of look(): goes on from a picture that there is, of the size of the window.
+  // Replaces look(): continues from an existing picture of the window's size.
   void go_on_from(const Image& coarse, const PixelRect& window);
 
-  // Takes the pixels of a tile that have samples over the coarse ones; shows the picture where the
-  // last one has stood for a while. Any number of threads, as long as nobody adds to this tile.
+  // Replaces coarse pixels by those of a tile that have samples. Shows the picture if the last one
+  // is old enough. Any thread may call it, as long as no other thread changes this tile.
   void update(const Film& film, const PixelRect& tile);
 
-  // The picture that was shown last or is about to be; empty before look() has made a picture.
-  // While nobody updates.
+  // Returns the picture shown last or next; empty before the first look(). Not during update().
   const Image& picture() const { return image_; }
 
  private:
@@ -56,10 +56,10 @@ class Preview {
   Show show_;
   PreviewPace pace_;
   PixelRect window_;
-  Image image_;  // empty: nobody has looked yet
+  Image image_;  // empty before the first look()
   std::mutex mutex_;
   bool is_showing_ = false;
-  Clock::time_point next_;  // not before this
+  Clock::time_point next_;  // earliest time of the next picture
 };
 
 }  // namespace troffer

@@ -1,11 +1,11 @@
-// How long work tells how far it is.
+// Callback by which long work reports its progress.
 #pragma once
 
 #include <functional>
 
 namespace troffer {
 
-// Called from one thread at a time, with the fraction done in [0,1].
+// Receives the fraction done, in [0,1]. Called from one thread at a time.
 using ProgressCallback = std::function<void(double fraction)>;
 
 }  // namespace troffer

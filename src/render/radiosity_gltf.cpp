@@ -19,7 +19,7 @@ namespace troffer {
 namespace {
 
 struct Vertex {
-  std::array<uint32_t, 6> bits;  // position, colour
+  std::array<uint32_t, 6> bits;  // position and colour
   bool operator==(const Vertex&) const = default;
 };
 struct VertexHash {
@@ -30,7 +30,7 @@ struct VertexHash {
   }
 };
 
-// What a primitive refers to; equal vertices are shared.
+// Vertices and indices of a primitive; equal vertices are shared.
 class Drawing {
  public:
   void add(const Vec3& position, Rgb colour) {
@@ -53,13 +53,13 @@ class Drawing {
   std::unordered_map<Vertex, uint32_t, VertexHash> known_;
 };
 
-// Finite and within [0,1], as [1] §3.7.2.1 asks of colours.
+// Returns a colour that is finite and in [0,1], as [1] §3.7.2.1 requires.
 Rgb shown(Rgb c) {
   for (size_t i = 0; i < 3; ++i) c[i] = c[i] > 0 ? std::min(c[i], 1.0f) : 0.0f;
   return c;
 }
 
-// Light of each fragment's triangle.
+// Returns the light of each fragment's triangle.
 std::vector<int32_t> lights_of_fragments(const RadiosityMesh& mesh) {
   std::vector<int32_t> lights(mesh.fragments.size(), no_light);
   std::vector<int32_t> stack;
@@ -78,7 +78,7 @@ std::vector<int32_t> lights_of_fragments(const RadiosityMesh& mesh) {
   return lights;
 }
 
-// pi L, of the front or the back; textures count as white.
+// Returns pi L of the front or the back; textures count as white.
 Rgb exitance(const Scene& scene, int32_t light, bool is_back) {
   if (light < 0) return Rgb{0};
   const Light& e = scene.lights[size_t(light)];
@@ -90,7 +90,7 @@ Rgb display_irradiance(const RadiositySolution& s, uint32_t point) {
   return e.is_black() ? e : e + s.ambient;
 }
 
-// 1 / the radiosity, of the brightest channel, that 95 % of the area stay below.
+// Returns 1 / the radiosity, in the brightest channel, that 95 % of the area do not exceed.
 float choose_exposure(const RadiositySolution& s) {
   struct Part {
     float value, area;
@@ -138,7 +138,7 @@ Drawing draw_light(const Scene& scene, const RadiositySolution& s, float exposur
   return out;
 }
 
-// Outlines of elements, a little in front of each side.
+// Draws the outlines of elements, slightly in front of each side.
 Drawing draw_elements(const RadiositySolution& s) {
   struct Edge {
     uint32_t a, b, element, fragment;
@@ -164,7 +164,7 @@ Drawing draw_elements(const RadiositySolution& s) {
   for (size_t i = 0; i < edges.size(); ++i) {
     const Edge& e = edges[i];
     if ((i > 0 && is_same(edges[i - 1], e)) || (i + 1 < edges.size() && is_same(e, edges[i + 1])))
-      continue;  // within an element
+      continue;  // inside an element
     const Vec3 normal = fragment_normal(mesh, e.fragment) * lift;
     for (uint32_t side = 0; side < 2; ++side) {
       if (mesh.element_points[e.element][side] == no_point) continue;
@@ -181,8 +181,8 @@ void append(std::vector<uint8_t>& out, const std::vector<T>& values) {
   out.insert(out.end(), bytes, bytes + values.size() * sizeof(T));
 }
 
-// Binary data and the lists of JSON objects that describe it. All components have four bytes, so
-// that everything is aligned.
+// Binary data, and the lists of JSON objects that describe it. All components have four bytes, so
+// everything is aligned.
 class Buffer {
  public:
   std::string add_positions(const std::vector<Vec3>& p) {
@@ -232,7 +232,7 @@ std::string base64(const std::vector<uint8_t>& bytes) {
   return out;
 }
 
-// Node property that turns the scene's world into glTF's; empty where they are the same.
+// Returns the node property that transforms the scene's world into glTF's; empty if they agree.
 std::string world_matrix(const Scene& scene) {
   const Vec3d& o = scene.origin;
   const auto translation = [&](const Vec3d& t) {
@@ -271,7 +271,7 @@ std::string material_json(const char* name, const char* colour) {
       name, colour);
 }
 
-// Fills `buffer`, which the text holds too where `is_embedded`.
+// Fills `buffer`, which the text contains as well if `is_embedded`.
 std::string file_json(const Scene& scene, const RadiositySolution& s, bool is_embedded,
                       Buffer& buffer) {
   const float exposure = choose_exposure(s);

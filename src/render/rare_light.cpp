@@ -11,17 +11,17 @@ namespace troffer {
 namespace {
 
 constexpr double normal_kurtosis = 3;
-// By how much of themselves the variances of a list's points are taken to differ, squared.
+// Assumed squared relative difference between the variances of a list's points.
 constexpr double variety = 0.25;
 
 double variance_of_sample(const PointLight& p) {
   return sqr(p.indirect.standard_error) * p.samples;
 }
 
-// What is usual in a list.
+// Means over the points of a list.
 struct Usual {
   double variance = 0;           // of one sample, lx²
-  double relative_variance = 0;  // … over the square of all light of its point
+  double relative_variance = 0;  // variance of one sample over the square of the point's light
   double kurtosis = normal_kurtosis;
 };
 
@@ -42,16 +42,16 @@ Usual usual_of(const std::vector<PointLight>& points) {
 
 }  // namespace
 
-// A variance that n sets tell is off by a share of itself whose square is (kurtosis - 1) / n, that
-// of normal sets left out, and points differ by their `variety`: the mean of own and usual,
-// weighted by one over these (empirical Bayes).
+// The variance estimated from n sets has a squared relative error of (kurtosis - 1) / n; the part
+// that normal sets have is left out. The list's variance differs from the point's by `variety`. The
+// result is the mean of both, weighted by the inverse of these (empirical Bayes).
 void tell_rare_light(std::vector<PointLight>& points, const std::vector<size_t>& which) {
   const Usual usual = usual_of(points);
   const double off = std::max(usual.kurtosis - normal_kurtosis, 0.0) / most_sets;
   const double weight = off / (off + variety);
   for (const size_t i : which) {
     PointLight& p = points[i];
-    if (p.samples <= 0) continue;  // a stop came before
+    if (p.samples <= 0) continue;  // not measured because of a stop
     const double own = variance_of_sample(p);
     const double of_list =
         std::min(usual.variance, usual.relative_variance * sqr(p.all.illuminance_lx));

@@ -1,10 +1,10 @@
-// Light that arrives by few samples of many: what their spread tells of errors, and what it does
-// not.
+// Correction of standard errors for light that few of many samples find.
 //
-// Where a fiftieth of a point's light comes by one sample in ten thousand (by way of a glass ball,
-// from a small lamp), of some points none comes, and the samples that did come differ by little:
-// the point is two per cent too dark, and its standard error says nothing of it. Other points of
-// the list have met such samples, and tell. Reference: docs/measure.md, "Rare light".
+// Example: a fiftieth of a point's light arrives by one sample in ten thousand, from a small lamp
+// by way of a glass ball. At some points no sample finds it, and the others differ little: the
+// point is two per cent too dark, and its standard error does not show it. Other points of the list
+// have found such samples and provide a better estimate of the variance. Reference:
+// docs/measure.md, "Rare light".
 #pragma once
 
 #include <cstddef>
@@ -14,11 +14,12 @@
 
 namespace troffer {
 
-// Raises standard errors of `which` of a list's points where its points' sets of samples differ by
-// few large values (kurtosis): towards what is usual in the list, for as many samples, of a point's
-// own light or of the list's, whichever is less. (Errors of sets of Sobol points fall faster than
-// their number grows, so that points with few samples raise others too far, if at all.) A single
-// point keeps its own; so do all where sets are as if normally distributed.
+// Raises the standard errors of the points `which`, if the sets of the list's points differ by few
+// large values (high kurtosis). The new value tends to the usual error in the list for as many
+// samples, absolute or relative to the point's light, whichever is less. Single points and lists
+// with normally distributed sets keep their errors.
+// Errors of Sobol sets fall faster than their size grows, so points with few samples tend to raise
+// others too much.
 void tell_rare_light(std::vector<PointLight>& points, const std::vector<size_t>& which);
 
 }  // namespace troffer

@@ -19,7 +19,7 @@ bool is_inside(const PixelRect& w, int x, int y) {
   return x >= w.x0 && y >= w.y0 && x < w.x1 && y < w.y1;
 }
 
-// Without gaps between members.
+// Stored form of a record, without padding between members.
 struct RecordBytes {
   uint32_t geometry, flags;
   Vec3 normal, position;
@@ -88,27 +88,27 @@ PixelLooks::PixelLooks(const Film& film, bool has_known, const PixelRect& window
 
 namespace {
 
-// What varies from sample to sample of a pixel.
+// Mean and variance of one quantity over the samples of a pixel.
 struct Varying {
   double mean = 0, variance = 0;
-  double independent = 0;  // of the variance, what is not by places in the pixel
+  double independent = 0;  // part of the variance that does not depend on the position in the pixel
 };
 
-// What the first pass saw around a pixel, its own samples left out.
+// What the first pass saw around a pixel; the pixel's own samples are left out.
 struct Surroundings {
-  double mean = 0;           // of the neighbours' luminances
-  double low = 0, high = 0;  // … of them, or of what is not known of them
-  Varying largest;           // the one whose samples vary most, likewise
-  Varying usual;             // … and the middle one
-  // The largest in a neighbour that is_apart(), without what lamps send it: what varies beside one,
-  // such as what it lights close by, goes on here.
+  double mean = 0;           // mean luminance of the neighbours
+  double low = 0, high = 0;  // extremes of the neighbours' means
+  Varying largest;           // the neighbour with the largest variance
+  Varying usual;             // the neighbour with the median variance
+  // Largest variance among neighbours that differ only by a known light outline (is_apart), without
+  // the lamps' own light. What varies beside a lamp, such as a surface close to it, continues here.
   Varying apart;
   double mean_variance = 0;
-  // Within a pixel, of the even slope that fits the neighbours' means: as a pixel's samples are
-  // spread over it, they err little by it. The variances above are without it.
+  // Variance within a pixel of the plane that fits the neighbours' means. Stratified samples err
+  // little by it, so the variances above exclude it.
   double slope_variance = 0;
-  bool has_contrast = false;  // between neighbours at opposite sides
-  // A neighbour's rays have met different surfaces where no corner of it shows an edge.
+  bool has_contrast = false;  // between neighbours on opposite sides
+  // A neighbour's rays met different surfaces although its corners show no edge.
   bool has_thin_things = false;
 };
 
@@ -128,7 +128,7 @@ Varying known_of(const KnownSums& k) {
   return {mean, n > 1 ? std::max(double(k.squares) / n - sqr(mean), 0.0) * n / (n - 1) : 0.0};
 }
 
-// Of samples of one pixel, by a plane through the means of those around it.
+// Variance of samples of one pixel due to a slope: a plane fitted to the means of its neighbours.
 class Slope {
  public:
   void add(int dx, int dy, double mean) {
@@ -153,11 +153,11 @@ class Slope {
   Vec3d sum_;
 };
 
-// Of a pixel's few samples, which lie in its four quarters, a slope shows with so much more than
-// its variance: they are spread more evenly than by chance.
+// Factor by which a slope raises the variance estimated from a pixel's few samples, one per quarter
+// of the pixel: they differ more than independent ones.
 constexpr double slope_in_samples = 1.25;
 
-// Up to eight neighbours, by their variances.
+// Up to eight neighbours, ordered by variance.
 class Ordered {
  public:
   void add(const Varying& v) {
@@ -173,14 +173,14 @@ class Ordered {
   size_t count_ = 0;
 };
 
-// The light of lamps whose outlines run through the pixel is no part of what varies in it, but of
-// the means around.
+// True if all light outlines in the pixel are known. The lamps' light then does not vary within the
+// pixel, but it is part of its mean.
 bool has_known_light(const RefinementView& v, int x, int y) {
   return v.edges.has_light_edge(x, y) && !v.edges.has_unknown_light_edge(x, y);
 }
 
-// Whether the outline of a light is all that may set a neighbour apart from a pixel without edges:
-// where it runs, and what it covers, is known.
+// True if a neighbour differs from a pixel without edges only by a light outline with known
+// coverage.
 bool is_apart(const RefinementView& v, int x, int y, int nx, int ny) {
   return has_known_light(v, nx, ny) && !v.edges.has_light_edge(x, y) &&
          !v.edges.has_surface_edge(x, y);
@@ -195,7 +195,8 @@ bool are_all_apart(const RefinementView& v, int x, int y) {
   return true;
 }
 
-// of: what varies; takes a pixel. are_comparable: its means, with the pixel.
+// `of` returns the varying quantity of a pixel. are_comparable: its means may be compared with
+// those of the pixel.
 template <class Of>
 Surroundings look_around(const RefinementView& v, int x, int y, bool are_comparable,
                          const RefinementOptions& options, const Of& of) {
@@ -223,7 +224,7 @@ Surroundings look_around(const RefinementView& v, int x, int y, bool are_compara
       s.has_thin_things |= v.records.has_edge[v.records.index(x + dx, y + dy)] != 0 &&
                            !v.edges.has_surface_edge(x + dx, y + dy);
       ++count;
-      const bool is_first_of_pair = dx + dy == -1;  // the left one, the upper one
+      const bool is_first_of_pair = dx + dy == -1;  // the left or the upper one
       if (is_first_of_pair && is_inside(w, x - dx, y - dy) && counts(x - dx, y - dy))
         s.has_contrast |= differ(v, x + dx, y + dy, x - dx, y - dy, options);
     }
@@ -241,19 +242,17 @@ Surroundings look_around(const RefinementView& v, int x, int y, bool are_compara
   return s;
 }
 
-// Amid clutter a pixel whose neighbours look all alike may have something in it that their rays
-// have missed: n rays that saw nothing leave a chance of 1 / (n + 2) that the next one does
-// (Laplace's rule of succession), and it then differs as others do around. A line through the
-// surroundings is no clutter. `of_slope`: Surroundings::slope_variance; `noticed`: the variance of
-// a sample that counts.
+// Returns the variance that a pixel in clutter may have although its neighbours look alike. If n
+// rays saw nothing, the next one does with probability 1 / (n + 2) (Laplace's rule of succession),
+// and then varies like the surroundings. A single line through the surroundings is not clutter.
+// `of_slope`: Surroundings::slope_variance; `noticed`: the least variance of a sample that counts.
 template <class Of>
 double variance_amid_clutter(const RefinementView& v, int x, int y, double of_slope, double noticed,
                              const Of& of) {
   constexpr int reach = 2;
   static_assert(reach <= PixelLooks::reach);
-  constexpr double rays = 32;  // of eight neighbours
-  // Of a share p of a pixel that differs by c the variance is p (1 - p) c²; its mean over p, c²
-  // / 6.
+  constexpr double rays = 32;  // of eight neighbours, four each
+  // If a share p of a pixel differs by c, the variance is p (1 - p) c². Its mean over p is c² / 6.
   constexpr double squares_of_variance = 6;
   int all = 0, varying = 0;
   double sum = 0;
@@ -273,8 +272,9 @@ double variance_amid_clutter(const RefinementView& v, int x, int y, double of_sl
   return weight * squares_of_variance / (rays + 2) * sum / varying;
 }
 
-// An edge goes on beyond the nearest neighbours: what is thin along it, a reveal or a rim, their
-// few rays may all have missed. The mean variance in pixels with an edge around.
+// Returns the mean variance of nearby pixels with an edge. An edge extends beyond the nearest
+// neighbours, whose few rays may all have missed a narrow feature along it, such as a reveal or a
+// rim.
 template <class Of>
 double variance_along_edge(const RefinementView& v, int x, int y, const Of& of) {
   constexpr int reach = PixelLooks::reach;
@@ -290,17 +290,16 @@ double variance_along_edge(const RefinementView& v, int x, int y, const Of& of) 
   return count > 0 ? sum / count : 0;
 }
 
-// Of a pixel in which something is seen that covers who knows how much of it, and differs by who
-// knows what: a share p and a contrast c leave p (1 - p) c²; its mean over all p and all c up to
-// the luminance around.
+// Returns the variance of a pixel with a sub-pixel feature of unknown coverage p and contrast c. It
+// is the mean of p (1 - p) c² over all p and all c up to the luminance around.
 double variance_of_thin_thing(double mean) {
   return sqr(mean) / 18;
 }
 
-// p of AllowedOfBright, as for edges: most further rays are theirs.
+// Exponent p of AllowedOfBright for edges, where most further rays go.
 constexpr double of_usual_of_further = 0.6;
 
-// Of the luminance of a pixel amid such a mean.
+// Returns the allowed error of a pixel whose surroundings have this mean luminance.
 double allowed_error(double mean, double typical, const RefinementOptions& options,
                      const AllowedOfBright& of_bright) {
   return options.is_everywhere
@@ -311,7 +310,7 @@ double allowed_error(double mean, double typical, const RefinementOptions& optio
 }  // namespace
 
 int surrogates_wanted(const RefinementView& v, int x, int y, const RefinementOptions& options) {
-  // Rays that cost so little may go for all that a picture's mean asks of what is bright.
+  // Surrogate rays are so cheap that bright pixels may get the full number by Neyman's rule.
   constexpr double most_times_less = 100;
   const auto of = [&](int px, int py) { return known_of(v.looks.at(px, py).known); };
   const bool is_light_known = has_known_light(v, x, y);
@@ -327,8 +326,8 @@ int surrogates_wanted(const RefinementView& v, int x, int y, const RefinementOpt
   const double variance =
       std::max({s.largest.variance, s.apart.variance, is_divided ? sqr(s.high - s.low) / 4 : 0.0,
                 clutter, v.edges.has_thin_thing(x, y) ? variance_of_thin_thing(s.mean) : 0.0});
-  // Samples that are spread over a pixel with an edge err by n^-3/4. (The neighbours need not have
-  // seen what shines.)
+  // Stratified samples of a pixel with an edge err by n^-3/4. The minimum applies since the
+  // neighbours may not have seen the lamp.
   const double least = is_light_known ? 64 : has_light ? 256 : 0;
   const double wanted = variance > 0 ? std::pow(variance / sqr(allowed), 2.0 / 3) : 0;
   if (std::max(wanted, least) <= 4) return 0;
@@ -355,17 +354,17 @@ WantedSamples samples_wanted(const RefinementView& v, int x, int y, bool has_sur
   if (has_surrogates && s.apart.variance > neighbour.variance) neighbour = s.apart;
   double variance = neighbour.variance;
   if (options.is_noise) variance = s.mean_variance;
-  // Two surfaces within the pixel, as different as the darkest and the brightest neighbour.
+  // Two surfaces within the pixel may differ as much as the darkest and the brightest neighbour.
   if (has_edge && !options.is_noise)
     variance = std::max({variance, sqr(s.high - s.low) / 4, variance_along_edge(v, x, y, of),
                          v.edges.has_thin_thing(x, y) ? variance_of_thin_thing(s.mean) : 0.0});
-  // What is far brighter than usual, as the edges of what the sun lights, is little of a picture
-  // and makes most of its error.
+  // Pixels far brighter than usual, such as edges of sunlight, are few but dominate the error of
+  // the picture.
   constexpr double most_times_less = 16;
   const double allowed = allowed_error(
       s.mean, v.typical, options,
       options.is_noise ? AllowedOfBright{} : AllowedOfBright{most_times_less, of_usual_of_further});
-  // Of thin things samples that are spread over a pixel know too little.
+  // Stratification does not help with sub-pixel features.
   SampleSpread spread;
   spread.chance = options.is_noise ? variance : std::min(variance, neighbour.independent);
   (s.has_thin_things ? spread.thin : spread.placed) = variance - spread.chance;
@@ -376,7 +375,7 @@ WantedSamples samples_wanted(const RefinementView& v, int x, int y, bool has_sur
                  {double(first), double(most), double(options.most_even), options.evenness,
                   options.is_noise ? 1 : options.most_effort_divisor});
   double wanted = need.count;
-  // Of a slope n samples that are spread over the pixel leave a variance of n^-3.
+  // A slope leaves a variance of n^-3 with n stratified samples.
   if (!options.is_noise) wanted = std::max(wanted, std::cbrt(s.slope_variance / sqr(allowed)));
   if (has_surrogates) wanted = std::max(wanted, double(options.least_with_surrogates));
   return {wanted < double(most) ? std::clamp(int(std::ceil(wanted)), first, most) : most,

@@ -1,10 +1,11 @@
-// Adaptive refinement of the image: which pixels deserve further viewing rays, and how many.
+// Adaptive refinement: decides which pixels get further viewing rays or surrogate samples, and how
+// many. Rendering calls it once after the first pass, which gives every pixel the same number of
+// rays.
 //
-// The first pass gives every pixel the same number of rays. How many more a pixel gets is decided
-// once, by what its own samples have no part in: its neighbours' samples of the first pass, and an
-// EdgeMap. (A pixel that is refined because its own rays differ has met something bright more often
-// than not; those whose rays have missed it stay as they are, and the picture comes out too dark.)
-// So the mean of every pixel stays that of its samples: unbiased where they are.
+// The decision about a pixel uses its neighbours' samples and an EdgeMap, but not its own samples.
+// A pixel whose own rays differ has more often than not met something bright. If it alone were
+// refined, pixels whose rays missed the bright thing would stay as they are, and the picture would
+// be too dark [3]. Leaving own samples out keeps the mean of every pixel unbiased.
 // References: [1] Painter & Sloan, "Antialiased Ray Tracing by Adaptive Progressive Refinement",
 //   SIGGRAPH 1989. [2] Kok & Jansen, Eurographics '92, §5. [3] Kirk & Arvo, "Unbiased Sampling
 //   Techniques for Image Synthesis", SIGGRAPH 1991 (the bias of samples that decide about
@@ -21,29 +22,29 @@
 namespace troffer {
 
 struct RefinementOptions {
-  // Difference of luminance between the two neighbours at opposite sides, over the sum of both, or
-  // over the image's mean where that is more.
+  // Threshold on the difference in luminance between two neighbours on opposite sides. Relative to
+  // the sum of both, or to the image's mean if that is more.
   float contrast = 0.05f;
-  // Light about which two patterns disagree, over the pixel's luminance.
+  // Threshold on the light about which two patterns disagree, relative to the pixel's luminance.
   float pattern_contrast = 0.05f;
-  // Standard error of the mean that is to be reached, over the larger of the luminance around and
-  // the image's mean.
+  // Standard error of the mean to be reached, relative to the luminance around or the image's mean,
+  // whichever is larger.
   float error = 0.01f;
-  // Pixels get further rays where no edge is to be seen, too, if their neighbours vary.
+  // Pixels without a visible edge get further rays, too, if their neighbours vary.
   bool is_everywhere = false;
-  // What neighbours vary by is noise, much the same in all of them: its mean counts.
+  // Neighbours vary by noise, much the same in all of them, so their mean variance counts.
   bool is_noise = false;
-  double evenness = 0;  // of it: PixelSampling
-  // More rays than this squared are in proportion to the pixel's standard deviation, not to its
-  // variance: so many rays leave the picture the least error. 0: all by the variance.
+  double evenness = 0;  // convergence of that noise (PixelSampling)
+  // Above most_even² rays, the count is proportional to the pixel's standard deviation instead of
+  // its variance. This minimizes the picture's error for a given number of rays. 0: never.
   float most_even = 0;
   uint32_t most_effort_divisor = 1;  // SampleRequest::most_effort_divisor
-  // Pixels that are glanced at get so many rays at least: where a glance knows what shines, but not
-  // what is lit, thin things that are lit would be left to the first few.
+  // Least number of rays of pixels with surrogate samples. If known radiance has emission but no
+  // reflected light, surrogates do not show sub-pixel features that are only lit.
   int least_with_surrogates = 0;
 };
 
-// One record for each pixel of the window, row by row: that of its last viewing ray.
+// Shadow records of a window, one per pixel, row by row: that of the pixel's last viewing ray.
 struct PixelRecords {
   PixelRect window;
   std::vector<ShadowRecord> records;
@@ -54,28 +55,28 @@ struct PixelRecords {
   size_t index(int x, int y) const {
     return size_t(y - window.y0) * size_t(window.width()) + size_t(x - window.x0);
   }
-  // Notes the next viewing ray of a pixel; is_first: the first one of it.
+  // Stores the record of the next viewing ray of a pixel; is_first: it is the pixel's first.
   void note(int x, int y, ShadowRecord&& record, bool is_first);
-  // All that is kept of a pixel, as bytes.
+  // Appends all data of a pixel.
   void save(int x, int y, std::vector<uint8_t>& out) const;
-  // … as save() has left it; false where there is too little, or what no pixel can be.
+  // Restores a pixel from the bytes of save(). Returns false if there are too few or the values are
+  // impossible.
   bool load(int x, int y, ByteReader& in);
-  // The pixel's own record and those of its four neighbours within the window.
+  // Returns the pixel's own record and those of its four neighbours within the window.
   NeighbourRecords around(int x, int y) const;
 };
 
-// What samples have said of the pixels of some rows, worked out once: decisions look at each pixel
-// some fifty times.
+// Estimates of the pixels of some rows, computed once: decisions read each pixel about fifty times.
 class PixelLooks {
  public:
   struct Look {
     PixelEstimate estimate;
-    KnownSums known;  // Film::known(); nothing where the film keeps none
+    KnownSums known;  // Film::known(); empty if the film keeps none
   };
-  // How far from a pixel decisions look.
+  // Distance in pixels within which decisions read others.
   static constexpr int reach = 3;
 
-  // Of pixels of the film's window `window`, rows from y0 to before y1 and those in reach of them.
+  // Computes rows y0 to y1 - 1 of the film's `window`, and those within `reach` of them.
   PixelLooks(const Film& film, bool has_known, const PixelRect& window, int y0, int y1);
   const Look& at(int x, int y) const {
     return looks_[size_t(y - rect_.y0) * size_t(rect_.width()) + size_t(x - rect_.x0)];
@@ -86,26 +87,26 @@ class PixelLooks {
   std::vector<Look> looks_;
 };
 
-// What the decision about a pixel looks at.
+// Input of the decision about a pixel.
 struct RefinementView {
-  const PixelLooks& looks;  // of the pixel's row
+  const PixelLooks& looks;  // rows around the pixel
   const PixelRecords& records;
   const EdgeMap& edges;
-  double typical = 0;  // luminance of the image
+  double typical = 0;  // typical luminance of the image
 };
 
-// How many rays a pixel should get that only look at what is known (Integrator::glance): none, or
-// a power of two, at most most_surrogates.
+// Returns the number of surrogate samples that a pixel should get (Integrator::surrogate_radiance):
+// none, or a power of two up to most_surrogates.
 constexpr int most_surrogates = 16'384;
 int surrogates_wanted(const RefinementView& view, int x, int y, const RefinementOptions& options);
 
 struct WantedSamples {
   int count = 0;
-  uint32_t effort_divisor = 1;  // SampleRequest::most_effort_divisor, of those after the first
+  uint32_t effort_divisor = 1;  // effort divisor of the samples after the first pass
 };
 
-// How many viewing rays a pixel should have, between `first` (what it has) and `most`;
-// has_surrogates: it will have some.
+// Returns the number of viewing rays that a pixel should have in total, from `first`, which it has,
+// to `most`. has_surrogates: it will have surrogate samples.
 WantedSamples samples_wanted(const RefinementView& view, int x, int y, bool has_surrogates,
                              int first, int most, const RefinementOptions& options);
 

@@ -20,11 +20,11 @@ namespace troffer {
 
 namespace {
 
-// Larger pictures are refused before memory is: machines that promise more than they have would end
-// the program without a word.
+// Larger pictures are refused up front: on systems that overcommit memory, the program would be
+// killed without a message.
 constexpr double most_film_bytes = 8.0 * (1 << 30);
 
-// InputError where the camera's numbers overflow: a place or a lens beyond measure.
+// Throws InputError if the camera's numbers overflow.
 void check_camera(const ViewingCamera& camera, const PixelRect& window, const PreparedScene& scene,
                   const std::string& name) {
   for (const int x : {window.x0, window.x1})
@@ -39,7 +39,7 @@ void check_camera(const ViewingCamera& camera, const PixelRect& window, const Pr
       }
 }
 
-// Small enough that a tile does not take too many shadow rays.
+// Returns a tile size at which a tile does not need too many shadow rays.
 int tile_side(Method method, const MethodSettings& settings, size_t lights) {
   const MethodRow& row = method.row();
   const double per_pixel = samples_per_batch * row.rays_per_sample(settings, lights);
@@ -48,7 +48,7 @@ int tile_side(Method method, const MethodSettings& settings, size_t lights) {
   return side;
 }
 
-// Progress from `first` to `last` of the whole.
+// Maps progress to the part from `first` to `last` of the whole.
 ProgressCallback part_of_progress(const ProgressCallback& progress, double first, double last) {
   if (!progress) return nullptr;
   return [&progress, first, last](double f) { progress(first + (last - first) * f); };
@@ -84,7 +84,7 @@ TilePlan plan_of(const PreparedScene& scene, const ImageSize& size, const Render
                     rules);
 }
 
-// Between the scene and the picture.
+// One call of render(): scene and options in, picture out.
 class Picture {
  public:
   Picture(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,
@@ -117,12 +117,13 @@ class Picture {
   const ImageSize size_;
   const TilePlan plan_;
   const ViewingCamera viewing_;
-  std::unique_ptr<GapFiller> filler_;  // null: there is all the time
+  std::unique_ptr<GapFiller> filler_;  // null if there is no deadline
   double seconds_per_gap_ = 0;
   double missing_light_ = 0;  // share of reflected light that cells cut short do not have
 };
 
-// Estimated error of the picture, relative to its mean: as Rendering::estimated_error().
+// Returns the estimated error of the picture, relative to its mean, like
+// Rendering::estimated_error().
 double estimated_error(const Film& film, const PixelRect& window) {
   double squares = 0, sum = 0;
   for (int y = window.y0; y < window.y1; ++y)
@@ -173,14 +174,13 @@ RenderResult Picture::make() {
   return result;
 }
 
-// Whoever stops a rendering finds its checkpoint, at whatever time that was; what an earlier one
-// holds stays.
+// Writes an empty checkpoint if a rendering is stopped early, unless an earlier one exists.
 void Picture::keep_beginning() const {
   if (options_.checkpoint != nullptr && options_.checkpoint->chunks().empty())
     options_.checkpoint->write([](const Checkpoint::Add&) {});
 }
 
-// Where it was broken off for want of time: whole all the same.
+// Fills the gaps of a picture whose deadline is over.
 void Picture::finish(Film& film, RenderResult& result) {
   if (result.end != RenderEnd::stopped || !filler_ || !options_.deadline->is_over()) return;
   result.statistics.gaps_filled = filler_->fill(film, plan_.window, *options_.deadline);
@@ -188,7 +188,7 @@ void Picture::finish(Film& film, RenderResult& result) {
   if (!options_.deadline->parent().load()) result.end = RenderEnd::out_of_time;
 }
 
-// Where a stop was requested, pixels without a sample take the preview.
+// Shows the preview in pixels without a sample after a stop.
 void Picture::show_preview_in_gaps(const Film& film, RenderResult& result) const {
   if (result.end != RenderEnd::stopped) return;
   Image& picture = result.layers[0].image;
@@ -204,12 +204,12 @@ void Picture::show_preview_in_gaps(const Film& film, RenderResult& result) const
     }
 }
 
-// Leaves the result without layers where it was stopped before there was anything to show.
+// Leaves the result without layers if it was stopped before there was anything to show.
 void Picture::render(const Preparation* preparation, RenderResult& result) {
   const PictureView view{pixels_of(plan_.image), pixels_of(plan_.region), [&](float x, float y) {
                            return viewing_.ray({x, y}, {0.5f, 0.5f});
                          }};
-  // Cells and their gathers take about as long as what follows.
+  // Cells and their gathering take about as long as the tiles.
   const double share = needs_cells(options_.method, options_.indirect) ? 0.5 : 0.0;
   const ProgressCallback of_cells = part_of_progress(progress_, 0, share),
                          of_tiles = part_of_progress(progress_, share, 1);
@@ -260,8 +260,8 @@ MostViewingRays most_viewing_rays(const RenderOptions& options) {
   const auto all = [](int n) { return MostViewingRays{n, n, n}; };
   if (options.max_spp > 0) return all(std::max(options.max_spp, options.spp));
   const MethodRow& row = options.method.row();
-  // By what is known beforehand edges cost little, and further rays are for what is left: many in
-  // the few pixels of what is small, of gloss and bright.
+  // Surrogate samples deal with edges cheaply. Further rays serve small, glossy and bright
+  // features, so a few pixels may need many.
   if (row.refinement > 1 && !needs_radiosity(options.method, options.indirect)) {
     const int usual = 16 * options.spp;
     if (!needs_cells(options.method, options.indirect))

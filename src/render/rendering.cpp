@@ -41,8 +41,8 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
     refining_.most.in_pixel = refining_.most.in_mean = std::max(most.in_pixel, sampling.most);
   film_.set_evenness(sampling.evenness);
   steps_.first = uint32_t(passes_of(refining_.first_spp));
-  // By as many rays as a pixel may come to: what a footprint takes from beside a narrow surface no
-  // further ray mends.
+  // Footprints follow the number of rays that a pixel may come to. A footprint that extends beyond
+  // a narrow surface adds an error that further rays do not reduce.
   for (Work& w : work_) w.rays.cone = camera.cone(std::max(options.spp, most.usual));
   if (refining_.most.in_pixel > refining_.first_spp) {
     refining_.records.emplace(plan_.region);
@@ -145,7 +145,7 @@ double Rendering::share_done() const {
 
 Counters Rendering::counters() const {
   Counters sum = book_.counters();
-  for (const Work& w : work_) sum += w.counters;  // of tiles that were broken off
+  for (const Work& w : work_) sum += w.counters;  // of interrupted tiles
   return sum;
 }
 
@@ -155,7 +155,7 @@ std::string Rendering::name_of_ray(const void* work, size_t i) {
          "), sample " + std::to_string(w.rays.samples[i]);
 }
 
-// Does these steps of those of the tiles, in this order, that have not done them yet.
+// Does these steps for those of the tiles, in this order, that have not done them yet.
 void Rendering::step(const StepSpan& steps, const Tiles& tiles, const Act& act) {
   if (options_.group != nullptr) return share_steps(steps, tiles, act);
   for (uint32_t number = steps.first; number < steps.end; ++number) {
@@ -170,7 +170,7 @@ void Rendering::step(const StepSpan& steps, const Tiles& tiles, const Act& act) 
   }
 }
 
-// False where it was stopped.
+// Returns false if it was stopped.
 bool Rendering::do_step(uint32_t number, size_t t, size_t slot, const Act& act) {
   if (stop_.load(std::memory_order_relaxed)) {
     progress_.was_stopped = true;
@@ -185,7 +185,8 @@ bool Rendering::do_step(uint32_t number, size_t t, size_t slot, const Act& act) 
     progress_.was_stopped = true;
     return false;
   }
-  const CheckContext context(&w, w.rays.size(), name_of_ray);  // for who is told
+  // errors thrown by callbacks name a ray
+  const CheckContext context(&w, w.rays.size(), name_of_ray);
   book_.finish(slot, w.counters);
   w.counters = {};
   if (!leads()) return true;
@@ -194,7 +195,7 @@ bool Rendering::do_step(uint32_t number, size_t t, size_t slot, const Act& act) 
   return true;
 }
 
-// Of a tile that no thread is busy with but this.
+// Reports progress. No other thread may work on the tile.
 void Rendering::tell_progress(size_t tile, uint32_t step) {
   const PixelRect& r = plan_.tiles[tile];
   if (options_.preview != nullptr) options_.preview->update(film_, r);
@@ -214,10 +215,10 @@ void Rendering::save_in_time() {
   if (options_.checkpoint != nullptr && options_.checkpoint->take_turn()) save();
 }
 
-// Whether the work may end after a step; later: tiles that would go on.
+// True if the work may end after a step. later: tiles that would continue.
 bool Rendering::is_good_enough(uint32_t step, const Tiles& later) {
   if (!(options_.error_limit > 0)) return false;
-  // Whoever went on knew that it was not.
+  // A tile that has passed this step proves that an earlier check found the error too large.
   bool has_gone_on = false;
   for (const size_t t : later) has_gone_on |= book_.steps(t) > step + 1;
   return agree(leads() && !has_gone_on && estimated_error() <= options_.error_limit);
@@ -229,20 +230,20 @@ Rendering::Tiles Rendering::all_tiles() const {
   return tiles;
 }
 
-// The next `count` viewing rays of a pixel.
+// Adds the next `count` viewing rays of a pixel.
 void Rendering::add_rays(const Pixel2& p, uint32_t count, Work& w) const {
   add_viewing_rays(camera_, p, film_.estimate(p.x, p.y).samples, count, options_.seed, w.rays);
   w.pixels.resize(w.rays.size(), p);
 }
 
-// Whatever rays there are; true.
+// Traces the collected rays, if any. Always returns true.
 bool Rendering::trace_all(Work& w) {
   const CheckContext context(&w, w.rays.size(), name_of_ray);
   if (w.rays.size() > 0) trace(w);
   return true;
 }
 
-// LightOutlines::evened.
+// Returns the correction of LightOutlines::evened for a ray.
 Rgb Rendering::evened(const Work& w, size_t ray) const {
   return refining_.outlines->evened(w.pixels[ray].x, w.pixels[ray].y, w.rays.places[ray],
                                     w.radiance.known[ray].direct);
@@ -264,7 +265,7 @@ void Rendering::trace(Work& w) {
     const bool is_first = film_.estimate(x, y).samples == 0;
     const float depth = camera_.depth(w.radiance.position[i]);
     if (!film_.add(x, y, w.radiance, i, depth)) ++w.counters.nan_samples;
-    // Refinement compares with what the first pass saw, and does not change it.
+    // Only the first pass stores records, since refinement compares with those.
     if (refining_.records && !refining_.has_begun)
       refining_.records->note(x, y, std::move(w.radiance.records[i]), is_first);
   }

@@ -1,4 +1,6 @@
-// One picture under way: passes over its tiles, and refinement where pixels need it.
+// State of one picture in progress: passes over its tiles, then refinement where pixels need it.
+// Used by render(). rendering_refinement.cpp holds refinement, rendering_state.cpp checkpoints,
+// rendering_group.cpp process groups.
 #pragma once
 
 #include <atomic>
@@ -20,32 +22,32 @@
 
 namespace troffer {
 
-// Samples of a pixel per batch: with a tile's pixels about a thousand paths, long enough for
-// packets and short enough for the second-level cache.
+// Samples of a pixel per batch. With a tile's pixels this gives about a thousand paths: long enough
+// for ray packets, short enough for the second-level cache.
 constexpr int samples_per_batch = 4;
 
-// Thirteen members: who takes part, what is made, and how far it is.
+// Thirteen members: the inputs, the picture, and its progress.
 class Rendering {
  public:
-  // All but camera and plan must outlive this. Goes on from options.checkpoint where that has been
-  // read: InputError where it says what cannot be.
+  // Arguments other than camera and plan must outlive this object. Continues from
+  // options.checkpoint if that has been read; throws InputError if its contents are impossible.
   Rendering(const PreparedScene& scene, const ViewingCamera& camera, const Integrator& integrator,
             const RenderOptions& options, TilePlan plan, const ProgressCallback& progress,
             const StopFlag& stop);
 
-  // For a deadline: what a pixel takes that gets no rays here.
+  // Sets the time that a pixel without rays will take to fill, for the deadline.
   void expect_gaps(double seconds_per_pixel);
 
-  // stopped, whoever asked for it; complete; or good_enough.
+  // Returns complete, good_enough, or stopped (by a request or a deadline).
   RenderEnd run();
 
   Film& film() { return film_; }
 
-  // Of the window.
+  // Results for the window.
   std::vector<Layer> layers() const;
   Counters counters() const;
   ViewingErrors viewing_errors() const;
-  double estimated_error() const;  // RenderStatistics
+  double estimated_error() const;  // as in RenderStatistics
   double share_done() const;
 
  private:
@@ -53,20 +55,20 @@ class Rendering {
   struct Work {
     ViewingRays rays;
     RadianceBatch radiance;
-    std::vector<Pixel2> pixels;  // of each ray
+    std::vector<Pixel2> pixels;  // per ray
     std::unique_ptr<IntegratorScratch> scratch;
-    Counters counters;  // of the tile under way
+    Counters counters;  // of the current tile
   };
-  // Of one pixel, as checkpoints and other processes get it: viewing rays in all, and the effort
-  // divisor of those after the first (SampleRequest::effort_divisor).
+  // Plan of one pixel, as in checkpoints and messages: viewing rays in total, surrogate samples,
+  // and the effort divisor of viewing rays after the first pass (SampleRequest::effort_divisor).
   struct WantedPixel {
     uint32_t samples, surrogates, effort_divisor;
   };
-  // By pixels of the region, row by row.
+  // Plans of the region's pixels, row by row.
   struct FurtherRays {
     std::vector<int> samples, surrogates;
     std::vector<uint32_t> effort_divisor;
-    // As if no further ray was wanted.
+    // Starts with no further rays.
     FurtherRays(size_t pixels, int first)
         : samples(pixels, first), surrogates(pixels), effort_divisor(pixels, 1) {}
     WantedPixel at(size_t i) const {
@@ -78,21 +80,22 @@ class Rendering {
       effort_divisor[i] = w.effort_divisor;
     }
   };
-  // What refinement knows; empty where pixels get no further rays.
+  // State of refinement; mostly empty if pixels get no further rays.
   struct Refining {
     int first_spp = 0;
     MostViewingRays most;
     RefinementOptions options;
     std::optional<PixelRecords> records;
     std::optional<const LightOutlines> outlines;
-    std::optional<double> typical;  // luminance
+    std::optional<double> typical;  // typical luminance of the picture
     std::optional<FurtherRays> wanted;
     bool has_begun = false;
-    bool takes_turns = true;  // a step of all tiles comes before the next: a limit may cut in
+    // all tiles finish a step before the next, so that a limit may end the work
+    bool takes_turns = true;
     bool has_surrogates = false;
   };
-  // How many steps of a tile (tile_book.h) are passes over all of the picture, looks at what is
-  // known, and further rays; in this order.
+  // Numbers of a tile's steps (tile_book.h) by kind, in this order: passes over the whole picture,
+  // surrogate samples, further rays.
   struct Steps {
     uint32_t first = 0, surrogates = 0, further = 0;
     uint32_t all() const { return first + surrogates + further; }
@@ -105,7 +108,7 @@ class Rendering {
     double seconds_per_gap = 0;
   };
   using Tiles = std::vector<size_t>;
-  // Does a step of a tile; false where it was stopped on the way.
+  // Does a step of a tile; returns false if it was stopped on the way.
   using Act = std::function<bool(uint32_t step, const PixelRect& tile, Work& work)>;
   struct StepSpan {
     uint32_t first = 0, end = 0;
@@ -131,13 +134,14 @@ class Rendering {
   void keep_in_bounds(const PixelRect& tile, int mean, std::vector<int>& wanted) const;
   void keep_in_bounds(const PixelRect& tile, FurtherRays& wanted) const;
   bool add_surrogates(const PixelRect& tile, Work& w);
-  // Not compared with neighbours' patterns, which come pass by pass.
+  // True if all further rays of a tile are traced in one step. Otherwise they come pass by pass,
+  // because kj92 compares patterns of neighbours.
   bool refines_at_once() const { return refining_.has_surrogates || refining_.options.is_noise; }
-  double typical_luminance();  // looked at once
+  double typical_luminance();  // computed once
   double mean_luminance(const PixelRect& window) const;
   void tell_progress(size_t tile, uint32_t step);
   void save_in_time();
-  // With a crew (rendering_crew.cpp).
+  // Within a process group (rendering_group.cpp):
   bool leads() const;
   void agree_on_limits();
   bool agree(bool value);

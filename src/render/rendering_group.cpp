@@ -1,5 +1,5 @@
-// A rendering that several processes work on (rendering.h, base/crew.h). Each has a film of its
-// own; rank 0's comes to hold all tiles.
+// A rendering that several processes work on (rendering.h, base/process_group.h). Each process has
+// its own film; that of rank 0 receives all tiles.
 #include "base/error.h"
 #include "base/process_group.h"
 #include "render/rendering.h"
@@ -19,7 +19,7 @@ bool Rendering::leads() const {
   return options_.group == nullptr || options_.group->leads();
 }
 
-// All are told what rank 0 thinks.
+// Returns rank 0's value to all processes.
 bool Rendering::agree(bool value) {
   if (options_.group == nullptr) return value;
   std::vector<uint8_t> bytes{uint8_t(value)};
@@ -28,13 +28,13 @@ bool Rendering::agree(bool value) {
   return false;
 }
 
-// A tile does as many steps as it can at a time, which saves telling what it is like in between;
-// but a picture that may have to end early grows everywhere alike.
+// Without limits, a tile does as many steps at a time as possible, which saves messages. A picture
+// that may have to end early advances evenly instead.
 void Rendering::agree_on_limits() {
   if (options_.group != nullptr) refining_.takes_turns = agree(is_limited());
 }
 
-// Records are what the first passes make of them; later ones leave them alone.
+// Records are part of it only during the first passes; later ones do not change them.
 void Rendering::save_for_group(size_t tile, std::vector<uint8_t>& out) const {
   const TileBook::State& state = book_.state(tile);
   append(out, StateHeader{state.steps, 0, state.counters});
@@ -46,7 +46,7 @@ void Rendering::save_for_group(size_t tile, std::vector<uint8_t>& out) const {
     }
 }
 
-// The pixels that follow a header.
+// Reads the pixels after a header.
 void Rendering::load_from_group(size_t tile, ByteReader& in) {
   const PixelRect& r = plan_.tiles[tile];
   for (int y = r.y0; y < r.y1; ++y)
@@ -57,7 +57,7 @@ void Rendering::load_from_group(size_t tile, ByteReader& in) {
     }
 }
 
-// Of rank 0, what another has done.
+// Takes over a tile that another process has worked on; called by rank 0.
 void Rendering::take_over(size_t tile, ByteReader in) {
   const auto h = in.next<StateHeader>();
   const uint32_t before = book_.steps(tile);
@@ -65,7 +65,7 @@ void Rendering::take_over(size_t tile, ByteReader in) {
   for (uint32_t s = before; s < h.steps; ++s) tell_progress(tile, s);
 }
 
-// A tile as it is, and what it is to get.
+// Appends the state of a tile and the rays planned for it.
 void Rendering::brief(size_t tile, std::vector<uint8_t>& out) const {
   save_for_group(tile, out);
   if (!refining_.has_begun) return;
@@ -115,7 +115,8 @@ void Rendering::share_steps(const StepSpan& steps, const Tiles& tiles, const Act
   if (!options_.group->share(work, stop_)) progress_.was_stopped = true;
 }
 
-// Patterns are compared with those of neighbours, which may be another's.
+// Gives all processes the records of the first pass: patterns are compared with those of
+// neighbours, which another process may have computed.
 void Rendering::share_records() {
   PixelRecords& records = *refining_.records;
   const PixelRect& r = records.window;

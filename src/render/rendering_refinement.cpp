@@ -1,4 +1,4 @@
-// Refinement of a rendering under way (rendering.h).
+// Refinement of a rendering in progress (rendering.h).
 #include <algorithm>
 #include <tuple>
 #include <utility>
@@ -13,15 +13,15 @@ namespace troffer {
 
 namespace {
 
-// With RenderOptions::error_limit it is looked at after each of so many parts of the further rays.
+// Number of parts of the further rays after which RenderOptions::error_limit is tested.
 constexpr size_t looks = 32;
 
 }  // namespace
 
-// Further rays, as many as the first pass has called for, in passes that fit a batch.
+// Traces the further rays that the first pass calls for.
 RenderEnd Rendering::refine() {
   const bool is_same_in_crops = options_.method.row().is_same_in_crops;
-  if (!leads())  // told tile by tile
+  if (!leads())  // rank 0 sends the plans with each tile
     refining_.wanted.emplace(refining_.records->records.size(), refining_.first_spp);
   else if (!refining_.wanted)
     refining_.wanted =
@@ -54,14 +54,14 @@ RenderEnd Rendering::refine_by_passes() {
   return RenderEnd::complete;
 }
 
-// All further rays of a tile at once: few pixels may get many.
+// Traces all further rays of a tile at once: a few pixels may get many.
 RenderEnd Rendering::refine_by_tiles() {
   const uint32_t further = steps_.first + steps_.surrogates;
   const auto act = [&](uint32_t number, const PixelRect& tile, Work& w) {
     return number < further ? add_surrogates(tile, w) : refine(tile, w);
   };
   if (!refining_.takes_turns) {
-    // What takes longest is not to be begun last.
+    // Start the longest tiles first.
     step({steps_.first, steps_.all()}, leads() ? noisiest_first() : all_tiles(), act);
     return progress_.was_stopped ? RenderEnd::stopped : RenderEnd::complete;
   }
@@ -79,7 +79,8 @@ RenderEnd Rendering::refine_by_tiles() {
   return progress_.was_stopped ? RenderEnd::stopped : RenderEnd::complete;
 }
 
-// Where time may be short it goes to tiles whose pixels want most, each by itself.
+// Returns the tiles ordered by the mean number of samples wanted, so that scarce time goes to the
+// noisiest.
 Rendering::Tiles Rendering::noisiest_first() const {
   std::vector<double> wanted;
   for (const PixelRect& tile : plan_.tiles) {
@@ -95,16 +96,15 @@ Rendering::Tiles Rendering::noisiest_first() const {
   return tiles;
 }
 
-// How many times the usual error each of so many rays of a pixel may have: together they still
-// leave it at most half of what the usual number does. A power of two, so that rays of many pixels
-// go together.
+// Returns the error scale of each of `rays` rays of a pixel. Their mean still errs at most half as
+// much as that of the usual number. Powers of two let the rays of many pixels share batches.
 float Rendering::error_scale(int rays) const {
   float loose = 1;
   for (int n = rays / (16 * std::max(options_.spp, 1)); n > 0; n /= 4) loose *= 2;
   return loose;
 }
 
-// False where it was stopped before all of the tile's rays were sent.
+// Returns false if it was stopped before all of the tile's rays were traced.
 bool Rendering::refine(const PixelRect& tile, Work& w) {
   constexpr size_t rays_at_a_time = 1024;
   const auto send = [&] {
@@ -144,7 +144,7 @@ bool Rendering::refine(const PixelRect& tile, Work& w) {
   return end(true);
 }
 
-// How many of them the pixels of the region get, by what the first pass has seen.
+// Decides the further rays and surrogate samples of all pixels of the region, from the first pass.
 Rendering::FurtherRays Rendering::further_rays(double typical) const {
   const PixelRecords& records = *refining_.records;
   const EdgeMap edges(scene_, camera_, plan_.region, *refining_.outlines, options_.threads);
@@ -177,8 +177,8 @@ Rendering::FurtherRays Rendering::further_rays(double typical) const {
   return wanted;
 }
 
-// Some pixels of a tile may get more than the mean, as long as others want less: those that want
-// most get as many as are left for each.
+// Limits the mean number over a tile. Pixels may exceed the mean as long as others want less; the
+// largest wishes are cut to a common value.
 void Rendering::keep_in_bounds(const PixelRect& tile, int mean, std::vector<int>& wanted) const {
   std::vector<int*> most_last;
   for (const Pixel2& p : pixels_in_order(tile))
@@ -191,7 +191,7 @@ void Rendering::keep_in_bounds(const PixelRect& tile, int mean, std::vector<int>
   }
 }
 
-// Viewing rays; those that are fewer than were wanted are lit with a smaller effort divisor.
+// Limits viewing rays. Pixels that get fewer rays than wanted get a smaller effort divisor.
 void Rendering::keep_in_bounds(const PixelRect& tile, FurtherRays& wanted) const {
   const std::vector<Pixel2> pixels = pixels_in_order(tile);
   std::vector<int> asked;
@@ -205,10 +205,11 @@ void Rendering::keep_in_bounds(const PixelRect& tile, FurtherRays& wanted) const
   }
 }
 
-// Rays that look at what is known, where that varies within a pixel.
+// Adds surrogate samples to the pixels of a tile. Returns true.
 bool Rendering::add_surrogates(const PixelRect& tile, Work& w) {
   constexpr size_t rays_at_a_time = 1024;
-  const uint64_t seed = hash_of(options_.seed, uint64_t{0x676c'616e});  // not that of samples
+  // independent of the samples
+  const uint64_t seed = hash_of(options_.seed, uint64_t{0x676c'616e});
   const auto send = [&] {
     const CheckContext context(&w, w.rays.size(), name_of_ray);
     w.radiance.reset(w.rays.size());
@@ -236,8 +237,8 @@ bool Rendering::add_surrogates(const PixelRect& tile, Work& w) {
   return true;
 }
 
-// Mean luminance of the whole picture but its brightest twentieth (what shines), from few rays,
-// which are no part of the picture and of its statistics.
+// Returns the mean luminance of the whole picture without its brightest twentieth, which holds
+// visible lamps. It traces few rays, which enter neither the picture nor its statistics.
 double Rendering::typical_luminance() {
   if (refining_.typical) return *refining_.typical;
   constexpr int most = 16;  // rays along each side
@@ -245,7 +246,8 @@ double Rendering::typical_luminance() {
   if (!w.scratch) w.scratch = integrator_.make_scratch();
   w.rays.clear();
   w.pixels.clear();
-  const uint64_t seed = hash_of(options_.seed, uint64_t{0x7479'7069});  // not the picture's own
+  // independent of the picture's own samples
+  const uint64_t seed = hash_of(options_.seed, uint64_t{0x7479'7069});
   const int width = plan_.image.width(), height = plan_.image.height();
   const int nx = std::min(most, width), ny = std::min(most, height);
   for (int j = 0; j < ny; ++j)
@@ -253,7 +255,7 @@ double Rendering::typical_luminance() {
       w.pixels.push_back({i * width / nx, j * height / ny});
       add_viewing_rays(camera_, w.pixels.back(), 0, 1, seed, w.rays);
     }
-  // What was gathered for pixels is known within the window alone: to crops as much as to all.
+  // Gather records exist only within the window; without pixels, crops and whole pictures agree.
   w.rays.pixels.clear();
   w.rays.places.clear();
   const CheckContext context(&w, w.rays.size(), name_of_ray);

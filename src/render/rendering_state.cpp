@@ -1,4 +1,4 @@
-// A rendering as chunks of a checkpoint, and back (rendering.h).
+// Saving a rendering as chunks of a checkpoint, and restoring it (rendering.h).
 #include <bit>
 
 #include "base/error.h"
@@ -9,7 +9,7 @@ namespace troffer {
 
 namespace {
 
-// In place of a tile's number: how many further rays pixels are to get.
+// In place of a tile's number: the chunk holds the plan of further rays.
 constexpr uint32_t wanted_chunk = 0xffffffff;
 
 struct TileHeader {
@@ -29,8 +29,8 @@ void Rendering::save_tile(size_t tile, std::vector<uint8_t>& out) const {
     }
 }
 
-// Each tile is taken by itself, while others are worked on: what a tile does next depends on
-// others only where all have done a step, and then they are what they would become again.
+// Writes tiles one by one, while others are being worked on. This is consistent: a tile depends on
+// others only after all have finished a step, and restoring reproduces that state.
 void Rendering::save() {
   options_.checkpoint->write([&](const Checkpoint::Add& add) {
     std::vector<uint8_t> chunk;
@@ -93,7 +93,7 @@ bool Rendering::restore_wanted(ByteReader in) {
   return true;
 }
 
-// Rays that a pixel must have had after so many steps.
+// True if the pixel has the numbers of samples that these steps produce.
 bool Rendering::is_as_expected(uint32_t steps, int x, int y) const {
   uint32_t samples = std::min(uint32_t(refining_.first_spp), steps * samples_per_batch),
            surrogates = 0;

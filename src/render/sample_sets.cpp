@@ -8,7 +8,7 @@
 
 namespace troffer {
 
-// Cornish-Fisher expansion about the normal quantile; exact values for the first few.
+// Cornish-Fisher expansion about the normal quantile; exact values up to n = 5.
 double t_quantile_95(int n) {
   constexpr std::array<double, 5> exact{12.7062, 4.3027, 3.1824, 2.7764, 2.5706};
   if (n <= 5) return exact[size_t(n - 1)];

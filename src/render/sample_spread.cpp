@@ -9,14 +9,15 @@ namespace troffer {
 
 namespace {
 
-// What a viewing ray takes before any light is drawn for it, over what is drawn usually.
+// Cost of a viewing ray without light sampling, relative to the light sampling of a full one.
 constexpr double bare_cost = 0.1;
-// Where further samples of a pixel may be drawn with an effort divisor above 1, its first ones are
-// lit with more care than even those without, which differ by chance so many times as much, in
-// variance …
+// Variance of further samples relative to first ones. If an effort divisor above 1 is allowed,
+// first samples are computed more carefully than further ones, even those with divisor 1. The
+// independent variance of further samples is then larger by this factor.
 constexpr double chance_of_further = 2;
-// … and, where lights are drawn, by so much of the mean's square. Without it they are where
-// nothing else is cheaper: where the first ones differ by chance hardly at all, they are not.
+// Addition to the independent variance of further samples where lights are sampled, relative to the
+// squared mean. At divisor 1 it vanishes as the variance of the first samples does: lights are
+// sampled only where nothing else is cheaper.
 constexpr double chance_of_draws = 0.02, least_of_first = 1.0 / 400;
 
 double chance_of(uint32_t effort_divisor, double of_first, double mean, bool are_alike) {
@@ -26,8 +27,8 @@ double chance_of(uint32_t effort_divisor, double of_first, double mean, bool are
   return effort_divisor * (chance_of_further * of_first + chance_of_draws * drawn);
 }
 
-// Samples that are spread over a pixel err by n^-3/4 by what an edge divides, and by n^-1/2 by
-// chance of their own, or n^-(1 + evenness)/2 where that is as even.
+// Returns the number of samples for an error. Stratified samples err by n^-3/4 at an edge. They err
+// by n^-1/2 due to independent variance, or by n^-(1 + evenness)/2 if that is stratified, too.
 double count_for(const SampleSpread& s, double chance, double allowed2, double evenness) {
   const double independent = std::pow((chance + s.thin) / allowed2, 1 / (1 + evenness));
   return independent + std::pow(s.placed / allowed2, 2.0 / 3);
@@ -37,7 +38,7 @@ double count_for(const SampleSpread& s, double chance, double allowed2, double e
 
 SampleNeed least_work(const SampleSpread& spread, double mean, double allowed,
                       const SampleCosts& costs) {
-  // Nothing to see by: no light is allowed, none varies.
+  // nothing varies, so no estimate is possible
   if (!(spread.chance + spread.placed + spread.thin + spread.clutter > 0)) return {};
   const double allowed2 = sqr(allowed);
   const double as_first = count_for(spread, spread.chance, allowed2, costs.evenness);

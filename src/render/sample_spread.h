@@ -1,16 +1,17 @@
-// How many viewing rays a pixel wants, by what they differ by, and how much is done for each.
+// Number of viewing rays that a pixel needs, and the sampling effort for each, from the variances
+// seen around it. Used by refinement. Variances are of luminance.
 #pragma once
 
 #include <cstdint>
 
 namespace troffer {
 
-// Variances of a sample's luminance, for what is seen to vary around its pixel.
+// Variance of one sample's luminance, by cause, estimated around the pixel.
 struct SampleSpread {
-  double chance = 0;  // by random numbers of its own
-  double placed = 0;  // by where it lies in a pixel that an edge divides
-  double thin = 0;    // … if things are too thin for samples spread over the pixel to tell evenly
-  double clutter = 0;  // what the neighbours' samples may have missed
+  double chance = 0;   // independent of the position in the pixel
+  double placed = 0;   // by position, in a pixel that an edge divides
+  double thin = 0;     // by position, for features too small for stratification
+  double clutter = 0;  // from features that the neighbours' samples may have missed
 };
 
 struct SampleNeed {
@@ -19,17 +20,17 @@ struct SampleNeed {
 };
 
 struct SampleCosts {
-  double first = 0;  // samples that the pixel has: of so few no further one is asked for
-  double most = 0;   // … that it may have: thrift that would want more is not for it
-  // Count × cost beyond this squared is in proportion to the standard deviation, not to the
-  // variance. 0: never.
+  double first = 0;  // samples that the pixel has; no fewer are considered
+  double most = 0;   // samples that it may have; effort divisors that need more are excluded
+  // If count × cost exceeds the square of this, it is reduced to the proportion of the standard
+  // deviation instead of the variance. 0: never.
   double most_even = 0;
   double evenness = 0;               // PixelSampling
-  uint32_t most_effort_divisor = 1;  // 1: further samples are drawn as the first ones are
+  uint32_t most_effort_divisor = 1;  // 1: further samples are computed like the first ones
 };
 
-// With what thrift samples leave the pixel an error of `allowed` (both in luminance; mean: of what
-// is around) for the least time, and how many of them.
+// Returns the effort divisor and the number of samples with which a pixel reaches the error
+// `allowed` at least cost. `allowed` and `mean`, the mean of the surroundings, are luminances.
 SampleNeed least_work(const SampleSpread& spread, double mean, double allowed,
                       const SampleCosts& costs);
 

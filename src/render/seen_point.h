@@ -1,4 +1,5 @@
-// What a picture shows at one of its places: a point on a surface.
+// The surface point that a picture shows at a raster position. The viewer uses it to pick points
+// for measuring.
 #pragma once
 
 #include <optional>
@@ -10,13 +11,13 @@
 namespace troffer {
 
 struct SeenPoint {
-  MeasuringPoint point;  // in the file's coordinates; its normal, unit, on the side that is seen
-  std::string name;      // of the mesh; empty: of a sphere or a disk, or it has none
+  MeasuringPoint point;  // in the file's coordinates; unit normal on the visible side
+  std::string name;      // of the mesh; empty for spheres, disks and unnamed meshes
 };
 
-// The first surface, panes of clear glass left out, on the ray through raster position (x, y), in
-// pixels from the top left corner of a picture of this size. Nothing where the ray leaves the
-// scene.
+// Returns the first surface, other than panes of clear glass, on the ray through a raster position.
+// That is in pixels from the top left corner of a picture of this size. Returns nothing if the ray
+// leaves the scene.
 std::optional<SeenPoint> point_seen(const PreparedScene& scene, const Camera& camera, int width,
                                     int height, const Vec2& raster);
 

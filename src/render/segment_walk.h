@@ -1,4 +1,5 @@
-// A straight line in space, as it runs through the pixels of a picture.
+// Rasterization of a straight segment in space: visits its points pixel by pixel. Used to follow
+// light outlines and to search for sub-pixel features.
 #pragma once
 
 #include <algorithm>
@@ -9,17 +10,17 @@
 
 namespace troffer {
 
-// Points of a segment that fall into the region, no farther apart than half a pixel, and in each
-// pixel that it runs through; none of a segment of more than 2^15 pixels. What lies beside the
-// region is left out by halves: long segments that miss most of it cost little more than what is in
-// it. What lies behind the camera is left out.
+// Visits points of a segment within the region, at most half a pixel apart and at least one in
+// every pixel that it crosses. Bisection skips what lies beside the region, so long segments that
+// mostly miss it are cheap. Points behind the camera are left out, as is everything longer than
+// 2^15 pixels.
 class SegmentWalk {
  public:
-  // The camera must outlive this.
+  // The camera must outlive this object.
   SegmentWalk(const ViewingCamera& camera, const PixelRect& region)
       : camera_(camera), region_(region) {}
 
-  // visit(position, raster): of both ends of every part, so that most points come twice.
+  // Calls visit(position, raster) for both ends of every part, so most points come twice.
   template <class Visit>
   void walk(const Vec3& a, const Vec3& b, const Visit& visit) const {
     halve(at(a), at(b), 0, visit);
@@ -29,7 +30,7 @@ class SegmentWalk {
   struct Point {
     Vec3 position;
     Vec2 raster;
-    bool is_before = false;  // the camera
+    bool is_before = false;  // in front of the camera
   };
 
   Point at(const Vec3& p) const {
@@ -62,8 +63,8 @@ class SegmentWalk {
     halve(a, middle, depth + 1, visit);
     halve(middle, b, depth + 1, visit);
   }
-  // Of two points in pixels that meet at a corner: one in the third pixel, which the line between
-  // them cuts the corner of.
+  // If the pixels of two points meet only at a corner, visits a point in the third pixel, whose
+  // corner the line cuts.
   template <class Visit>
   void visit_between(const Point& a, const Point& b, const Visit& visit) const {
     const auto border = [](float p, float q) { return std::floor(std::max(p, q)); };

@@ -1,4 +1,4 @@
-// Facts about a scene's sources, for people.
+// Area and power of a scene's lights, for the command info, reports and the viewer.
 #pragma once
 
 #include <vector>
@@ -9,10 +9,10 @@ namespace troffer {
 
 struct SourceInfo {
   double area = 0;   // m², one side
-  double power = 0;  // luminance of the flux that leaves: W, or lm where the scene is photometric
+  double power = 0;  // emitted flux (its luminance): W, or lm in photometric scenes
 };
 
-// One per light.
+// Returns one entry per light.
 std::vector<SourceInfo> source_infos(const Scene& scene);
 
 }  // namespace troffer

@@ -13,12 +13,12 @@ namespace troffer {
 
 namespace {
 
-// What is as wide as this, in pixels, covers a corner wherever it lies, or nearly.
+// Width in pixels from which a feature covers a corner almost wherever it lies.
 constexpr float narrow = 1.5f;
-// A mesh of more triangles per pixel than this, over the rectangle it fills, is fine everywhere:
-// corners tell of it, and its triangles are too many to look at one by one.
+// A mesh with more triangles per pixel, over its bounding rectangle, is fine everywhere. Corners
+// show that, and its triangles are too many to test one by one.
 constexpr double most_per_pixel = 64;
-// Rays do not end where they are told to by more than this share of their way.
+// Rays end this far along the way to a feature, so that rounding does not make it hide itself.
 constexpr float reach = 0.999f;
 
 class Search {
@@ -44,7 +44,7 @@ class Search {
     });
   }
 
-  // A sphere or disk about `centre` that is seen at `front`, of this normal.
+  // Tests a sphere or disk around `centre` whose visible point is `front`, with this normal.
   void look_at_round(const Vec3& centre, const Vec3& front, const Vec3& normal, float radius,
                      uint32_t geometry) {
     const Vec3 other = std::abs(normal.x) < 0.9f ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -77,7 +77,7 @@ class Search {
   }
   static float length_of(const Vec2& v) { return std::sqrt(v.x * v.x + v.y * v.y); }
 
-  // Some of the box may be in the picture, and is no cloud of triangles there.
+  // True if some of the box may be visible and its mesh is not too dense there.
   bool is_worth_while(const Box& box, size_t triangles) const {
     if (box.is_empty()) return false;
     Vec2 low{1e30f, 1e30f}, high{-1e30f, -1e30f};
@@ -107,7 +107,7 @@ class Search {
     if (!(x1 >= float(region_.x0) && x0 < float(region_.x1) && y1 >= float(region_.y0) &&
           y0 < float(region_.y1)))
       return;
-    // The longest side, from a to b, and the corner beside it.
+    // Find the longest side, from a to b, and the opposite corner.
     size_t a = 0;
     float longest = -1;
     for (size_t k = 0; k < 3; ++k) {
@@ -127,7 +127,7 @@ class Search {
     if (!(size > 0)) return;
     place.is_front = dot(normal, camera_.towards_eye(corner[0])) >= 0;
     place.normal = normal * ((place.is_front ? 1 : -1) / size);
-    // Near its corners, and along the line half-way across it.
+    // Test places near the corners, and along the line half-way across the triangle.
     constexpr float inwards = 0.1f;
     const Vec3 middle = (corner[0] + corner[1] + corner[2]) * (1.0f / 3);
     for (const Vec3& p : corner) {
@@ -135,7 +135,7 @@ class Search {
       place.position = p + (middle - p) * inwards;
       if (camera_.raster_of(place.position, at) && is_inside(at)) look_at_place(place, at);
     }
-    Vec2 last{-1, -1};  // of the pixels, whose places come in turn
+    Vec2 last{-1, -1};  // the last pixel; places of one pixel come in succession
     const auto look = [&](const Vec3& position, const Vec2& at) {
       if (int(at.x) == int(last.x) && int(at.y) == int(last.y)) return;
       last = at;
@@ -154,14 +154,14 @@ class Search {
     if (place.is_of_surface_of(seen)) return;
     Ray ray = camera_.ray(at, {0.5f, 0.5f});
     const float distance = length(place.position - ray.origin);
-    // Behind what all corners see, which is one surface.
+    // Hidden behind the single surface that all corners see.
     if (seen.geometry != no_geometry && dot(seen.position - place.position, seen.normal) > 0 &&
         distance > length(seen.position - ray.origin))
       return;
     ray.t_max = reach * distance;
     uint8_t is_hidden = 0;
     scene_.tracer.occluded({&ray, 1}, {&is_hidden, 1}, Coherence::coherent);
-    // Whoever comes first finds the same.
+    // Threads that race here store the same value.
     if (is_hidden == 0) states_[i].store(something, std::memory_order_relaxed);
   }
 

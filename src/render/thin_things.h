@@ -1,5 +1,6 @@
-// Things that lie between the corners of pixels: leaves far away, wires, slats seen from their
-// edges. They are found by where their triangles are, not by chance.
+// Search for sub-pixel features: things between the corners of pixels, such as distant leaves,
+// wires, or slats seen edge-on. They are found from their geometry, without random samples. Used by
+// EdgeMap.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +11,10 @@
 
 namespace troffer {
 
-// Per pixel of the region, row by row: whether a triangle, sphere or disk that is narrower than a
-// pixel or two is seen in it, through its middle, and is none of what the pixel's corners see.
-// has_edge: likewise, of pixels whose corners differ; they are not looked at. Triangles that reach
-// behind the camera are left out.
+// Returns per pixel of the region, row by row, whether it shows such a feature: a triangle, sphere
+// or disk narrower than about 1.5 pixels, not on a surface that the pixel's corners see. has_edge:
+// pixels whose corners differ, in the same order; they are skipped. Triangles that reach behind the
+// camera are left out.
 std::vector<uint8_t> pixels_with_thin_things(const PreparedScene& scene,
                                              const ViewingCamera& camera, const PixelRect& region,
                                              const PixelCorners& corners,

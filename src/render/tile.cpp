@@ -36,7 +36,7 @@ PixelRect wanted_window(const RenderOptions& o, int width, int height) {
 PixelRect share_of(const PixelRect& asked, const TileRules& rules, int part, int parts) {
   if (parts <= 1) return asked;
   const int side = rules.side;
-  // Tiles count from here.
+  // Origin of the tiling.
   const int x = rules.has_whole_tiles ? asked.x0 / side * side : asked.x0,
             y = rules.has_whole_tiles ? asked.y0 / side * side : asked.y0;
   PixelRect tiles{0, 0, (asked.x1 - x + side - 1) / side, (asked.y1 - y + side - 1) / side};
@@ -44,7 +44,7 @@ PixelRect share_of(const PixelRect& asked, const TileRules& rules, int part, int
   if (parts > count)
     throw UsageError("--part: the picture has but " + std::to_string(count) + " tiles of " +
                      std::to_string(side) + "x" + std::to_string(side) + " pixels to share out");
-  // Cut in two, across the longer side, until one share is left.
+  // Cut in two across the longer side until one share is left.
   int64_t first = part - 1, left = parts;
   while (left > 1) {
     const bool is_wide = tiles.width() >= tiles.height();

@@ -1,4 +1,5 @@
-// Tiles of the picture and the viewing rays through them.
+// Division of a picture into tiles and shares, and the viewing rays of pixels. Used by render(),
+// Rendering and the viewer. Coordinates are pixels of the whole image, from its top left corner.
 #pragma once
 
 #include <cstddef>
@@ -11,57 +12,60 @@
 
 namespace troffer {
 
-// The pixels that are asked for: UsageError where they are none, or not all in the picture.
+// Returns the pixels asked for. Throws UsageError if there are none, or if some lie outside the
+// picture.
 PixelRect wanted_window(const RenderOptions& options, int width, int height);
 
-// The window cut into squares, row by row; those at its right and lower border may be smaller.
+// Cuts the window into squares, row by row; those at its right and lower border may be smaller.
 std::vector<PixelRect> tiles_of(const PixelRect& window, int side);
 
-// The window grown to whole tiles of the image's own tiling (from its top left corner), and by
-// `rings` of tiles around them, as far as the image reaches.
+// Returns the window grown to whole tiles of the image's tiling, which starts at its top left
+// corner. `rings` rings of tiles around it are added, as far as the image reaches.
 PixelRect whole_tiles(const PixelRect& window, int side, int rings, const PixelRect& image);
 
-// The part `window` of an image whose pixels are those of `region`.
+// Returns the part `window` of an image whose pixels are those of `region`.
 Image part_of(const Image& image, const PixelRect& region, const PixelRect& window);
 
-// Which pixels are rendered, and in which tiles.
+// The pixels to render, and their tiles.
 struct TilePlan {
-  PixelRect image;   // the whole picture
-  PixelRect asked;   // what is wanted of it, all shares together
-  PixelRect window;  // what is wanted here
-  PixelRect region;  // what is rendered: the window, and what it takes for it to be as it should
-  PixelRect inner;   // where refinement is decided: the window in whole tiles, or the window itself
-  int side = 0;      // of tiles, pixels
-  std::vector<PixelRect> tiles;  // of the region
+  PixelRect image;   // whole picture
+  PixelRect asked;   // pixels asked for, over all shares
+  PixelRect window;  // pixels asked for in this share
+  PixelRect region;  // pixels rendered: the window, plus neighbours that it depends on
+  // where refinement is decided: the window, grown to whole tiles if tiles are whole
+  PixelRect inner;
+  int side = 0;                  // side of tiles, pixels
+  std::vector<PixelRect> tiles;  // tiles of the region
 };
 
+// Properties of the method that determine the tiles.
 struct TileRules {
   int side = 0;
-  // Tiles are those of the whole picture, with a ring of tiles around them where neighbours decide
-  // about refinement, so that the pixels of a crop, or a share, can be those of the picture.
+  // Tiles are those of the whole picture, with a ring of tiles around them if refinement depends on
+  // neighbours. The pixels of a crop or share then equal those of the picture.
   bool has_whole_tiles = false;
   bool is_refined = false;
-  // Refinement looks at all that is asked for.
+  // Refinement depends on all pixels asked for.
   bool looks_at_all = false;
 };
 
-// The part-th of `parts` shares of what is asked for, both counted from 1: a rectangle of whole
-// tiles, all of them about as large. Together they are all of it, each pixel once. UsageError where
-// there are more shares than tiles.
+// Returns share `part` of `parts`, counted from 1: a rectangle of whole tiles. Shares are about
+// equally large, and every pixel belongs to exactly one. Throws UsageError if there are more shares
+// than tiles.
 PixelRect share_of(const PixelRect& asked, const TileRules& rules, int part, int parts);
 
-// window: what is asked for, or a share of it.
+// Plans the tiles. window: the pixels asked for, or a share of them.
 TilePlan plan_tiles(const PixelRect& image, const PixelRect& asked, const PixelRect& window,
                     const TileRules& rules);
 
-// How many pixels two rectangles have in common.
+// Returns the number of pixels that two rectangles have in common.
 size_t common_pixels(const PixelRect& a, const PixelRect& b);
 
 struct Pixel2 {
   int x = 0, y = 0;
 };
 
-// The pixels of a tile in boustrophedon order: each is a neighbour of the one before.
+// Returns the pixels of a tile in boustrophedon order: each is a neighbour of the one before.
 std::vector<Pixel2> pixels_in_order(const PixelRect& tile);
 
 // Appends viewing rays `first` … first + count - 1 of a pixel, spread over its square (box filter).

@@ -34,7 +34,7 @@ void TileBook::replace(size_t tile, const State& state, const std::function<void
   states_[tile] = state;
 }
 
-// While the lock is held nobody begins to change a tile.
+// No thread can begin to change a tile while the lock is held.
 TileBook::State TileBook::snapshot(size_t tile, const Pixels& pixels,
                                    std::vector<uint8_t>& out) const {
   const std::lock_guard lock(mutex_);

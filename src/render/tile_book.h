@@ -1,7 +1,8 @@
-// How far each tile of a rendering is, kept such that a rendering under way can be told whole at
-// any moment: of a tile that a thread is busy with, as it was before.
+// Progress of a rendering's tiles, kept so that a consistent snapshot is possible at any moment:
+// for a tile in progress, its state before the current step. Used by Rendering for checkpoints and
+// process groups.
 //
-// A tile goes through steps, 0, 1, 2 …: a pass of the picture each.
+// A tile goes through steps 0, 1, 2 and so on, one per pass over the picture.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +17,10 @@ namespace troffer {
 class TileBook {
  public:
   struct State {
-    uint32_t steps = 0;  // done
-    Counters counters;   // of these
+    uint32_t steps = 0;  // number of steps done
+    Counters counters;   // work of these steps
   };
-  // What a tile's pixels are, as bytes.
+  // Appends the bytes of a tile's pixels.
   using Pixels = std::function<void(std::vector<uint8_t>&)>;
 
   // has_copies: snapshot() will be called.
@@ -29,18 +30,19 @@ class TileBook {
   size_t size() const { return states_.size(); }
   uint32_t steps(size_t tile) const { return states_[tile].steps; }
   const State& state(size_t tile) const { return states_[tile]; }
-  Counters counters() const;  // of all that is done
+  Counters counters() const;  // sum over all tiles
 
-  // The thread of this slot is about to change the tile's pixels …
+  // Declares that the thread of this slot will change the tile's pixels.
   void begin(size_t tile, size_t slot, const Pixels& pixels);
-  // … and has done its next step, with so much work.
+  // Declares that it has finished the tile's next step, with this work.
   void finish(size_t slot, const Counters& counters);
 
-  // For who goes on with what another has begun; while no thread is busy with the tile.
+  // Sets a tile's state, for a rendering that continues an earlier one. No thread may work on it.
   void restore(size_t tile, const State& state) { states_[tile] = state; }
-  // The same while others are at work: load() is to make its pixels what they are then.
+  // The same while other threads are at work: load() must set the pixels to that state.
   void replace(size_t tile, const State& state, const std::function<void()>& load);
-  // A tile as it was when it had last done a step, its pixels added to `out`. By any thread.
+  // Returns the tile's state after its last finished step, and appends its pixels to `out`. For any
+  // thread.
   State snapshot(size_t tile, const Pixels& pixels, std::vector<uint8_t>& out) const;
 
  private:
@@ -51,7 +53,7 @@ class TileBook {
   };
 
   std::vector<State> states_;
-  std::vector<Busy> busy_;  // by slots
+  std::vector<Busy> busy_;  // per slot
   bool has_copies_;
   mutable std::mutex mutex_;
 };

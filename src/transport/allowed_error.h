@@ -1,4 +1,6 @@
-// The error that a pixel may have, where all of a picture is made for one.
+// Error that one pixel may have when a picture as a whole must meet an asked error. Used by
+// refinement, path tracing's sample counts and the forecast of path tracing. Luminances are in the
+// picture's unit. Errors are standard errors of a pixel's luminance in that unit.
 #pragma once
 
 #include <algorithm>
@@ -8,28 +10,31 @@
 
 namespace troffer {
 
-// What is usual in a picture of such luminances, at least one: their mean but for the brightest
-// twentieth, what shines.
+// Returns the mean luminance of a picture without its brightest twentieth, which mostly holds
+// visible lamps. `values` holds at least one luminance.
 inline double usual_luminance(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   values.resize(values.size() - values.size() / 20);
   return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
 }
 
-// How what is bright is allowed to err.
+// Trade-off between the error of bright pixels and that of typical ones.
 struct AllowedOfBright {
-  // By so many times less than its own error, at most.
+  // Largest factor by which the allowed error lies below the one in proportion to the pixel's own
+  // luminance.
   double most_times_less = 4;
-  // By b^(1 - p) t^p, b the pixel's luminance and t the usual one. What its samples differ by goes
-  // with b; where n of them err by b n^(-q / 2), so many in all leave the picture the least error
-  // if each pixel errs in proportion to b^(1 / (1 + q)) (by Lagrange's multiplier). So p is 1/2
-  // where samples differ by chance (q = 1), and .6 at edges (q = 3/2).
+  // Exponent p of the allowed error b^(1 - p) t^p, with b the pixel's luminance and t the typical
+  // one. The spread of a pixel's samples is proportional to b, and n samples err by b n^(-q / 2).
+  // By Lagrange multipliers, a fixed number of samples leaves the least error if pixel errors are
+  // proportional to b^(1 / (1 + q)). This gives p = 1/2 for independent samples (q = 1) and p = .6
+  // at edges (q = 3/2).
   double of_usual = 0.5;
 };
 
-// Of luminance, for `error` of a pixel of this luminance in a picture in which `typical` is usual.
-// What is dark may err by as much as what is usual; what is bright by an error between that of its
-// own luminance and that of the picture's.
+// Returns the error allowed to a pixel of this luminance. `error` is the relative error asked for,
+// `typical` the typical luminance of the picture. Pixels darker than `typical` may have the error
+// of a typical one. Brighter pixels get an error between that and the one in proportion to their
+// own luminance.
 inline double allowed_error(double error, double luminance, double typical,
                             const AllowedOfBright& of_bright = {}) {
   const double b = std::max(luminance, typical);

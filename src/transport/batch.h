@@ -1,4 +1,6 @@
-// The plain arrays that flow through the renderer: viewing rays of a tile in, radiance out.
+// Plain arrays that the renderer passes to integrators and gets back: viewing rays or sensors go
+// in, radiance or irradiance comes out. Used by every integrator and by render/. Lengths are in
+// metres. Radiance and irradiance are linear RGB in the scene's units.
 #pragma once
 
 #include <algorithm>
@@ -18,19 +20,20 @@ struct PixelAt {
   int32_t x = 0, y = 0;
 };
 
-// n viewing rays, those of a pixel side by side.
+// n viewing rays; those of one pixel are adjacent.
 struct ViewingRays {
   std::vector<Ray> rays;
-  std::vector<uint64_t> streams;  // names the random numbers of the ray's pixel
-  std::vector<uint32_t> samples;  // which sample of that pixel
-  std::vector<PixelAt> pixels;    // where in the picture; empty: no picture is known
-  std::vector<Vec2> places;       // … and in that pixel, [0,1)²; empty likewise
-  // Empty, or for each ray what is known of the rays around it (methods that compare patterns).
+  std::vector<uint64_t> streams;  // random stream of the ray's pixel
+  std::vector<uint32_t> samples;  // sample number within that pixel
+  std::vector<PixelAt> pixels;    // pixel in the picture; empty if there is no picture
+  std::vector<Vec2> places;       // position within that pixel, [0,1)²; empty likewise
+  // Empty, or per ray the shadow records of neighbouring rays. Only methods that compare patterns
+  // use them.
   std::vector<NeighbourRecords> neighbours;
 
   // Kept by clear():
-  RayCone cone;           // of each ray, about a pixel wide
-  SampleRequest request;  // of all rays
+  RayCone cone;           // footprint of each ray, about a pixel wide
+  SampleRequest request;  // request for all rays
 
   size_t size() const { return rays.size(); }
   void clear() {
@@ -43,67 +46,67 @@ struct ViewingRays {
   }
 };
 
-// Points whose irradiance is asked for, as plain arrays of one length.
+// Points whose irradiance is to be estimated, as arrays of one length.
 struct SensorBatch {
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;  // unit
+  std::vector<Vec3> normals;  // unit vectors
   std::vector<uint64_t> streams;
   std::vector<uint32_t> samples;
-  float offset = 0;  // metres off the points, along their normals, at which rays start
-  // Light straight from sources is asked for at every so many-th sample alone, as sample number
-  // samples[i] / samples_per_direct of it, and counts so many times there (methods that compute it
-  // apart).
+  float offset = 0;  // distance of ray origins from the points along the normals, metres
+  // Light straight from sources is computed only for every samples_per_direct-th sample, and
+  // weighted by that factor. Its sample number is then samples[i] / samples_per_direct. Path
+  // tracing does not compute direct light separately and ignores it.
   uint32_t samples_per_direct = 1;
   size_t size() const { return positions.size(); }
 };
 
-// What is known of a viewing ray's radiance before any light is sampled for it: what the first
-// surface emits, and about what it reflects. The same for the same ray, however it is asked.
+// Radiance of a viewing ray that is known before any light is sampled: emission of the first
+// surface and an approximation of its reflected light. Deterministic for a given ray.
 struct KnownRadiance {
   Rgb direct, indirect;
 };
 
-// What n viewing rays bring back. direct + indirect is the radiance that arrives along the ray;
-// direct is the part that reaches the first surface, as seen by way of mirrors and clear glass,
-// straight from sources, and the sources themselves.
+// Result of n viewing rays. direct + indirect is the radiance that arrives along the ray. `direct`
+// is the light that reaches the first surface straight from sources, and emission. Mirrors and
+// clear glass do not count as surfaces here.
 struct RadianceBatch {
   std::vector<Rgb> direct, indirect;
-  // What of a sensor's `indirect` light mirrors bring straight from sources, asked for with
-  // `direct`; empty where nothing is asked for apart (SensorBatch::samples_per_direct).
+  // Part of a sensor's `indirect` light that reaches it by way of flat mirrors and was computed
+  // together with `direct`. Empty unless SensorBatch::samples_per_direct is above 1.
   std::vector<Rgb> images;
   std::vector<uint32_t> shadow_rays;
-  // Variance of the luminance of `direct` by the sampling of sources; empty where the method does
-  // not tell.
+  // Variance of the luminance of `direct` due to the sampling of sources. Empty if the method does
+  // not estimate it.
   std::vector<float> direct_variance;
-  // What the luminance of `indirect` may be off by and all samples of a pixel share: standard
-  // errors. Empty where the method does not tell.
+  // Standard error of the luminance of `indirect` that all samples of a pixel share. Empty if the
+  // method does not estimate it.
   std::vector<float> shared_error;
-  // … and one draw, of either sign, of what it is off by besides: that of samples is that of their
-  // sum. Empty likewise.
+  // One random draw, of either sign, of a further error of `indirect`. Draws of several samples add
+  // up with their signs. Empty if the method does not estimate it.
   std::vector<float> drawn_error;
-  // Luminance of that part of `indirect` whose error is told by either of these, less that of the
-  // part of `direct` whose is not (what a lobe's own ray has met): how far the rest is off, samples
-  // tell by how far they differ. Empty where nothing is told.
+  // Luminance of `indirect` that the two errors above cover, minus the luminance of `direct` that
+  // direct_variance does not cover (emission hit by a lobe's own ray). The error of the rest is
+  // estimated from the spread of the samples. Empty if the method estimates no errors.
   std::vector<float> indirect_with_error;
-  // The first surface hit; zero where nothing is.
+  // Properties of the first surface hit; zero if nothing is hit.
   std::vector<Rgb> albedo;
   std::vector<Vec3> normal, position;
   std::vector<uint8_t> is_hit;
-  // How many sources were treated there: sampled by shadow rays; probed, visible as it seems;
-  // probed, hidden as it seems.
+  // Numbers of sources at the first surface by treatment, as in Aov::sources.
   std::vector<Rgb> sources;
-  // Empty unless asked for by resizing it to n (methods that compare patterns).
+  // Empty unless the caller resizes it to n (methods that compare patterns).
   std::vector<ShadowRecord> records;
-  // Empty unless asked for by resizing it to n (Integrator::has_surrogates).
+  // Empty unless the caller resizes it to n (Integrator::has_surrogates).
   std::vector<KnownRadiance> known;
-  // Empty, or what has been added to `direct` and `known`, 0 in the mean over a pixel: to even out
-  // what lamps send to it.
+  // Correction that has been added to `direct` and `known` to remove the noise of visible lamps'
+  // edges. Its mean over a pixel is 0. Empty if there is none (LightOutlines).
   std::vector<Rgb> evened;
-  // Luminance of `direct` that the weightiest of all open points drawn of sources brought, 0 where
-  // none did: samples that happen to find all of them open differ by nothing.
+  // Largest luminance of `direct` that a single sampled point of a source has brought; 0 if none
+  // was sampled. It bounds the error where no sample happened to be occluded, so that the samples
+  // do not differ.
   float largest_draw = 0;
-  // Draws of what the luminance of `indirect`, summed over all, is off by and no number of samples
-  // brings down; 0 where the method knows nothing of it.
+  // Random draws of the error of the luminance of `indirect`, summed over all entries, that more
+  // samples do not reduce. 0 if the method does not estimate it.
   NoiseDraws noise{};
   void reset(size_t n) {
     direct.assign(n, Rgb{0});
@@ -125,7 +128,7 @@ struct RadianceBatch {
     largest_draw = 0;
     noise = {};
   }
-  // For methods that tell the variance: light along viewing ray i, and what its luminance's is.
+  // Arrays of error estimates, for methods that provide them.
   void enable_shared_error() {
     shared_error.resize(direct.size(), 0);
     drawn_error.resize(direct.size(), 0);
@@ -136,12 +139,13 @@ struct RadianceBatch {
     (is_direct ? direct : indirect)[i] += light;
     if (is_direct && !direct_variance.empty()) direct_variance[i] += variance;
   }
-  // A point drawn of a source has brought so much.
+  // Notes the luminance that one sampled point of a source has brought.
   void note_draw(bool is_direct, float luminance) {
     if (is_direct) largest_draw = std::max(largest_draw, luminance);
   }
-  // Of light that was added as direct. Where samples are not asked, the variance of one of them is
-  // no more than the mean of its square.
+  // Excludes direct light of this luminance from the estimated variance. If the spread of samples
+  // is not used, the square of the luminance is added, since the mean square bounds the variance of
+  // a sample.
   void exclude_from_error(size_t i, float luminance) {
     if (!indirect_with_error.empty())
       indirect_with_error[i] -= luminance;
@@ -150,14 +154,14 @@ struct RadianceBatch {
   }
 };
 
-// Counts of work done; those of all batches are added up.
+// Counts of work done. Counts of batches are added up.
 struct Counters {
   uint64_t viewing_rays = 0;
-  uint64_t surrogates = 0;      // viewing rays that look up what is known, and ask no source
+  uint64_t surrogates = 0;      // viewing rays that only look up known radiance
   uint64_t extension_rays = 0;  // closest-hit rays after the viewing ray
   uint64_t shadow_rays = 0;
   uint64_t nan_samples = 0;
-  // (hit, source) pairs by how they were answered
+  // (hit, source) pairs by the way they were answered
   uint64_t lit_certified = 0, dark_certified = 0, masked = 0, mixed = 0;
 
   Counters& operator+=(const Counters& o) {

@@ -1,5 +1,6 @@
-// What a surface does with light where a ray meets it: made there, or kept since the scene was made
-// ready (even_scatterings.h).
+// BSDF of a surface at a vertex. Takes it from EvenScatterings if the material is the same
+// everywhere, and builds it otherwise. Used by all integrators at every hit. BSDFs are in the
+// vertex's shading frame.
 #pragma once
 
 #include <optional>
@@ -19,7 +20,8 @@ inline Bsdf bsdf_at(const PreparedScene& scene, const Vertex& v) {
   return bsdf_at(scene, v.surface.material, v.surface.uv, v.is_front);
 }
 
-// The same without copies, whole and in parts. Stays where it was made, as long as its scene does.
+// Same as bsdf_at(), but without copying, and also split into diffuse and specular part. Must not
+// outlive the scene; references that it returns must not outlive it.
 class ScatteringAt {
  public:
   ScatteringAt(const PreparedScene& scene, const Vertex& v)
@@ -32,7 +34,8 @@ class ScatteringAt {
   ScatteringAt& operator=(const ScatteringAt&) = delete;
 
   const Bsdf& whole() const { return even_ != nullptr ? even_->whole : *made_; }
-  // To take a side from; before in_parts(). Surfaces of two sides are never kept.
+  // The BSDF for take_far_side(), which modifies it. Call before in_parts(). Only for surfaces with
+  // two sides: EvenScatterings never holds them.
   Bsdf& of_two_sides() { return made_.value(); }
   const SurfaceScattering& in_parts() {
     if (even_ != nullptr) return *even_;

@@ -57,7 +57,7 @@ Rgb emission_at(const PreparedScene& scene, const Vertex& v) {
   if (s.light < 0) return Rgb{0};
   const Light& light = scene.scene.lights[size_t(s.light)];
   const Rgb mean = emitted_radiance(scene.scene, light, v.is_front, s.uv, v.frame.to_world(v.wo));
-  // A ray that met a blended surface has paid for those that did not.
+  // Rays pass a blended surface with probability 1 - share, so a hit is weighted by 1 / share.
   const float share = coverage(scene.scene, light, s.uv.uv);
   return share > 0 && share < 1 ? mean / share : mean;
 }

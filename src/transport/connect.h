@@ -1,4 +1,6 @@
-// Connecting a vertex with a point on a light: what every method that samples sources shares.
+// Connections from a vertex to points on lights, and the weights of multiple importance sampling.
+// Shared by all methods that sample sources. Radiance is linear RGB; densities are per solid angle
+// (1/sr) unless said otherwise.
 #pragma once
 
 #include "light/light.h"
@@ -7,40 +9,41 @@
 
 namespace troffer {
 
-// An unoccluded connection and the ray that tells whether it is one.
+// A connection under the assumption that nothing is in the way, and the shadow ray that tests this.
 struct LightConnection {
-  Ray shadow_ray;       // t_max = 1; ends just before the light, or never
-  Rgb value;            // f |cos| × radiance that the light sends
-  float pdf_light = 0;  // of the light's point, per solid angle, the light being given; delta: 1
-  float pdf_bsdf = 0;   // with which the BSDF's sampling finds this point of the light; delta: 0
+  Ray shadow_ray;       // t_max = 1; ends just before the light, infinite for lights at infinity
+  Rgb value;            // f |cos| × radiance of the light
+  float pdf_light = 0;  // density of the point per solid angle, given the light; 1 for delta lights
+  float pdf_bsdf = 0;   // density with which BSDF sampling finds the point; 0 for delta lights
 };
 
-// The ray from a surface to a point of a source whose unit normal towards the surface is given;
-// t_max = 1 stops it just before the source.
+// Returns the shadow ray from a surface to a point of a source. `normal` is the source's unit
+// normal towards the surface. t_max = 1 ends the ray just before the source.
 Ray shadow_ray_to(const Surface& s, const Vec3& point, const Vec3& normal);
 
-// The same towards a sample of a light, whatever its kind.
+// Returns the shadow ray to a sample of a light of any kind.
 Ray shadow_ray_to(const Surface& s, const LightSample& light);
 
-// Connects v with a sample of a light. False where nothing can arrive.
+// Connects v with a sample of a light. Returns false if no light can arrive.
 bool connect(const Vertex& v, const Bsdf& bsdf, const LightSample& light, LightConnection& out);
 
-// The density per solid angle, given that `light` is sampled, with which sample() picks the point
-// that a ray from `from` meets at vertex v.
+// Returns the density per solid angle with which sample(), given `light`, picks the point that a
+// ray from `from` meets at vertex v.
 float pdf_of_hit(const PreparedScene& scene, const LightPrimitive& light, const Vec3& from,
                  const Vec3& direction, const Vertex& v);
 
-// The light primitive at a vertex, or no_primitive.
+// Returns the light primitive at a surface point, or no_primitive.
 int32_t primitive_at(const PreparedScene& scene, const Surface& surface);
 
-// Radiance that the surface at v itself emits towards the viewer.
+// Returns the radiance that the surface at v emits towards the viewer.
 Rgb emission_at(const PreparedScene& scene, const Vertex& v);
 
-// The power heuristic with exponent 2 for one sample of each technique; multiply densities by
-// sample counts for more. (Veach 1997, Eq. 9.13)
+// Returns the power heuristic's weight (exponent 2) for one sample of each technique. For several
+// samples, multiply each density by its sample count. (Veach 1997, Eq. 9.13)
 inline float power_heuristic(float pdf, float other) {
   if (pdf == 0) return 0;
-  const float ratio = other / pdf;  // a quotient cannot overflow into inf / inf
+  // division first: squares of large densities would overflow to inf / inf
+  const float ratio = other / pdf;
   return 1 / (1 + ratio * ratio);
 }
 

@@ -1,8 +1,9 @@
-// Light straight from sources, as a method computes it: one of the two parts that a method chooses.
+// Interface of direct light: light straight from sources. WaveIntegrator combines one
+// DirectLight with at most one IndirectLight.
 //
-// A walk brings hits, a few dozen at a time, to queue(); flush() ends a wave. By then their light
-// has been added to `out`, times the walks' throughput, at the walks' indices. One virtual call per
-// few dozen hits, none per ray.
+// A walk passes its hits to queue(), a few dozen at a time; flush() ends a wave. By then the light
+// of the hits, times the walks' throughput, has been added to `out` at the walks' indices. One
+// virtual call serves a few dozen hits.
 #pragma once
 
 #include <memory>
@@ -18,33 +19,35 @@ struct DirectLightScratch {
   virtual ~DirectLightScratch() = default;
 };
 
-// What is left to walks, which compete with the sampling of sources there.
+// The part of a surface's scattering that walks follow, in competition with the sampling of
+// sources.
 enum class WalkedPart : uint8_t {
-  whole,     // all that a surface scatters, where it is not Lambertian
-  specular,  // mirrors, gloss, what transmits: SurfaceScattering::specular
+  whole,     // all of it, unless the surface is Lambertian
+  specular,  // mirror, gloss and transmission: SurfaceScattering::specular
 };
 
-// Immutable; any number of threads may call it, each with a scratch of its own.
+// Immutable and thread-safe; each thread needs its own scratch.
 class DirectLight {
  public:
   virtual ~DirectLight() = default;
   virtual std::unique_ptr<DirectLightScratch> make_scratch() const = 0;
   virtual WalkedPart walked_part() const = 0;
-  // The variance of what is added is told (RadianceBatch::direct_variance).
+  // True if queue() and flush() estimate RadianceBatch::direct_variance.
   virtual bool tells_variance() const { return false; }
 
-  // Images of lights in mirrors, whose light is added too, where a surface's diffuse part gets it:
-  // walks that run into such a light by way of such a mirror do not count it. Null: none.
+  // Mirror images whose lights are added to the diffuse part of surfaces; null if there are none.
+  // Walks must not count emission that they meet by way of such a mirror.
   virtual std::shared_ptr<const MirrorImages> images() const { return nullptr; }
 
-  // Starts a batch: forgets what was learnt from another one. `request` holds until the next call.
+  // Starts a batch and drops what was learnt from the previous one. `request` must stay valid until
+  // the next call.
   virtual void begin(const SampleRequest&, DirectLightScratch&) const {}
   virtual void queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBatch& out,
                      Counters& counters) const = 0;
   virtual void flush(DirectLightScratch& scratch, RadianceBatch& out, Counters& counters) const = 0;
 
-  // Weights of emission that walks have run into, all of which left a vertex whose sources were
-  // sampled, by a lobe that is no delta: seen.weights, which are 1.
+  // Sets seen.weights, which are 1 on entry, for emission that walks have hit. Each walk left a
+  // vertex whose sources were sampled, by a lobe that is not a delta.
   virtual void weigh(SeenEmission& seen) const = 0;
 };
 

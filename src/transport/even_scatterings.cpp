@@ -8,7 +8,7 @@ namespace troffer {
 
 namespace {
 
-// Of the first ones: about 3 kB each.
+// Limit on memory: a material takes about 3 kB.
 constexpr size_t most_materials = 1024;
 
 bool is_even(const Material& m) {

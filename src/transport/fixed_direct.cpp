@@ -16,14 +16,15 @@ void FixedDirect::queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBat
                         Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
   CheckItems items;
-  // Rays of neighbouring hits to one source go side by side.
+  // Lights are the outer loop, so that rays from neighbouring hits to one source are adjacent.
   for (uint32_t light = 0; light < sampler_.lights(); ++light) {
     if (sampler_.is_empty(light)) continue;
     for (size_t i = 0; i < wave.size(); ++i) {
       const Bsdf& bsdf = wave.bsdfs[i];
       if (is_purely_delta(bsdf)) continue;
       items.at(wave.walks[i].index);
-      const bool is_matte = is_lambertian(bsdf, nullptr);  // else a sample of its own competes
+      // glossy surfaces also follow their own lobe
+      const bool is_matte = is_lambertian(bsdf, nullptr);
       const SampledVertex at{wave.walks[i], wave.vertices[i], is_matte ? &bsdf : nullptr,
                              is_matte ? nullptr : &bsdf, bsdf.has_transmission};
       sampler_.sample(at, light, shadow_rays_, s.rays, out, counters);

@@ -1,8 +1,8 @@
-// Direct light by a fixed number of shadow rays to every source: the baseline of classical
-// distribution ray tracing, with Owen-scrambled Sobol points.
+// Direct light by a fixed number of shadow rays to every source, at Owen-scrambled Sobol points.
+// This is classical distribution ray tracing, the baseline of the comparisons. Unbiased.
 //
-// Diffuse surfaces use shadow rays alone; glossy ones also one sample of their own lobe, the
-// walk's, combined by the power heuristic. Unbiased.
+// Diffuse surfaces use shadow rays alone. Glossy ones also use the walk, which is one sample of
+// their own lobe; the power heuristic combines both.
 #pragma once
 
 #include "transport/direct_light.h"

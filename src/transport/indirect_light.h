@@ -1,5 +1,6 @@
-// Light that has been reflected before, as a method computes it: the other of the two parts that a
-// method chooses (direct_light.h). Without it a walk ends at the first rough surface.
+// Interface of indirect light: light that has been reflected before it reaches a hit. The
+// counterpart of DirectLight (direct_light.h). Without an IndirectLight, a walk ends at the first
+// rough surface.
 #pragma once
 
 #include <memory>
@@ -13,23 +14,24 @@ struct IndirectLightScratch {
   virtual ~IndirectLightScratch() = default;
 };
 
-// Immutable; any number of threads may call it, each with a scratch of its own.
+// Immutable and thread-safe; each thread needs its own scratch.
 class IndirectLight {
  public:
   virtual ~IndirectLight() = default;
   virtual std::unique_ptr<IndirectLightScratch> make_scratch() const = 0;
 
-  // Starts a batch: forgets what was learnt from another one. `request` holds until the next call.
+  // Starts a batch and drops what was learnt from the previous one. `request` must stay valid until
+  // the next call.
   virtual void begin(const SampleRequest&, IndirectLightScratch&) const {}
-  // What the hits' diffuse parts send on (SurfaceScattering::diffuse), as DirectLight::queue has
-  // it; the specular parts are the walks'.
+  // Adds the indirect light that the diffuse parts of hits reflect (SurfaceScattering::diffuse),
+  // under the same terms as DirectLight::queue. Walks account for the specular parts.
   virtual void queue(WaveHits& wave, IndirectLightScratch& scratch, RadianceBatch& out,
                      Counters& counters) const = 0;
-  // Whether queue() wants wide gloss of first hits as well (SurfaceScattering::gather_gloss).
+  // True if queue() also takes the wide gloss of first hits (SurfaceScattering::gather_gloss).
   virtual bool gathers_gloss() const { return false; }
-  // Whether know() knows anything.
+  // True if know() is implemented.
   virtual bool is_known() const { return false; }
-  // Adds to out.known what first hits reflect, by what is at hand: no rays.
+  // Adds an approximation of the light that first hits reflect to out.known. Traces no rays.
   virtual void know(const WaveHits&, RadianceBatch&) const {}
   virtual void flush(IndirectLightScratch& scratch, RadianceBatch& out,
                      Counters& counters) const = 0;

@@ -1,4 +1,6 @@
-// What every method of computing light offers to render/.
+// Interface of all methods that compute light. render/ makes one integrator per picture or list of
+// points, and calls it with batches of viewing rays or sensors from many threads. Radiance is in
+// the scene's units, irradiance in W/m² per channel (lx in photometric scenes).
 #pragma once
 
 #include <memory>
@@ -13,22 +15,21 @@ struct IntegratorScratch {
   virtual ~IntegratorScratch() = default;
 };
 
-// How the pixels of a picture are to be sampled by an integrator whose viewing rays cost little and
-// differ much; nothing of it: as the method's are.
+// Adaptive sampling of pixels for an integrator whose viewing rays are cheap and noisy. The default
+// means that the method's usual sampling applies.
 struct PixelSampling {
-  int first = 0;     // viewing rays of a pixel by which its noise is judged
-  int most = 0;      // … in all, wherever that is noisier than
-  double error = 0;  // … this (allowed_error())
-  // Means of n viewing rays of a pixel, which are spread evenly, have about the variance of
-  // n^(1 + evenness) independent ones.
+  int first = 0;     // viewing rays of a pixel after which its noise is estimated
+  int most = 0;      // viewing rays of a pixel at most
+  double error = 0;  // relative error at which sampling stops (allowed_error())
+  // Convergence of stratified samples: the mean of n viewing rays of a pixel has the variance of
+  // about n^(1 + evenness) independent ones.
   double evenness = 0;
   bool is_by_noise() const { return most > 0; }
 };
 
-// One virtual call per batch, never per ray. Immutable: any number of threads may call radiance,
-// each with a scratch of its own. The result depends on the rays, streams and samples alone, not
-// on what a scratch was used for before; and not on how rays are cut into batches, unless a method
-// says so (kj92).
+// Computes radiance and irradiance; one virtual call per batch. Immutable and thread-safe; each
+// thread needs its own scratch. Results depend only on rays, streams and samples. They do not
+// depend on how rays are cut into batches, unless a method says so (kj92).
 class Integrator {
  public:
   virtual ~Integrator() = default;
@@ -37,13 +38,14 @@ class Integrator {
   virtual void radiance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,
                         Counters& counters) const = 0;
   virtual PixelSampling sampling() const { return {}; }
-  // Whether there is anything known of radiance before light is sampled (KnownRadiance).
+  // True if surrogate_radiance() is implemented (KnownRadiance).
   virtual bool has_surrogates() const { return false; }
-  // Adds that to out.known, of size rays.size(), and nothing else.
+  // Adds known radiance to out.known, which has size rays.size(). Other members of
+  // `out` have no meaning afterwards.
   virtual void surrogate_radiance(const ViewingRays&, IntegratorScratch&, RadianceBatch&,
                                   Counters&) const {}
   // Adds one estimate of the irradiance at each point, W/m² per channel, to out.direct and
-  // out.indirect; `out` has been reset to sensors.size().
+  // out.indirect. `out` has been reset to sensors.size().
   virtual void irradiance(const SensorBatch& sensors, IntegratorScratch& scratch,
                           RadianceBatch& out, Counters& counters) const = 0;
 };

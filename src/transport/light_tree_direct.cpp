@@ -20,8 +20,8 @@ std::unique_ptr<DirectLightScratch> LightTreeDirect::make_scratch() const {
   return std::make_unique<LightTreeDirectScratch>();
 }
 
-// Sets lit, primitives, points_lit, light_u, light_v and light_pmf of the hits for which there is a
-// light; returns how many there are.
+// Sets lit, primitives, points_lit, light_u, light_v and light_pmf for the hits that have a light.
+// Returns their number.
 size_t LightTreeDirect::choose_lights(const WaveHits& wave, LightTreeDirectScratch& s) const {
   const size_t n = wave.size();
   s.streams.resize(n);
@@ -44,7 +44,7 @@ size_t LightTreeDirect::choose_lights(const WaveHits& wave, LightTreeDirectScrat
   }
   s.receivers.resize(m);
   scene_.light_tree.choose_many(s.receivers, s.choices.data(), s.tree_scratch);
-  // Those for whom there is a light close ranks.
+  // Compacts the arrays to the hits that have a light.
   size_t kept = 0;
   for (size_t k = 0; k < m; ++k) {
     if (s.choices[k].pmf == 0) continue;

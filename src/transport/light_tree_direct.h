@@ -1,6 +1,7 @@
-// Direct light by one shadow ray from each hit: to a light that the light tree picks, and a point
-// of it nearly in proportion to solid angle; combined with the walk's own sample by the power
-// heuristic. Next-event estimation, as path tracing wants it: stages over arrays.
+// Next-event estimation with a light tree: one shadow ray per hit. The tree picks a light, and a
+// point on it is sampled nearly in proportion to solid angle. The power heuristic combines this
+// with the walk's own direction. Used by path tracing, gather rays and the choice of mirror images.
+// Works in stages over arrays.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,7 @@ struct LightTreeDirectScratch final : DirectLightScratch {
   std::vector<uint64_t> streams;
   std::vector<uint32_t> samples;
   std::vector<float> numbers;
-  // The hits that take part, and the point that each is to be connected with.
+  // Hits that take part, and the point that each is connected with.
   std::vector<uint32_t> lit, primitives;
   LightReceivers receivers;
   std::vector<LightChoice> choices;
@@ -33,9 +34,8 @@ struct LightTreeDirectScratch final : DirectLightScratch {
 
 class LightTreeDirect final : public DirectLight {
  public:
-  // Where walks go on from the hits by the surface's own scattering and count the emission they run
-  // into: from surfaces that are not Lambertian; from all of them, as paths do; from none, so that
-  // all light is this one's.
+  // Surfaces at which walks continue by BSDF sampling and count the emission that they hit: all but
+  // Lambertian ones; all, as in path tracing; none. With none, shadow rays bring all light.
   enum class Competition { glossy, all, none };
   explicit LightTreeDirect(const PreparedScene& scene,
                            Competition competition = Competition::glossy)
@@ -43,14 +43,14 @@ class LightTreeDirect final : public DirectLight {
 
   std::unique_ptr<DirectLightScratch> make_scratch() const override;
   WalkedPart walked_part() const override { return WalkedPart::whole; }
-  // Hits of one wave: all with the same number of vertices behind them.
+  // All hits of a wave must have the same number of vertices behind them.
   void queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBatch& out,
              Counters& counters) const override;
   void flush(DirectLightScratch& scratch, RadianceBatch& out, Counters& counters) const override;
   void weigh(SeenEmission& seen) const override;
-  // Of emission that a walk has run into at v.
+  // Returns the weight of emission that a walk has hit at v.
   float weight_of(const Walk& walk, const Vertex& v) const;
-  // Of a light at infinity, seen by a walk that has left the scene.
+  // Returns the weight of a light at infinity that a walk sees as it leaves the scene.
   float weight_of_miss(const Walk& walk, uint32_t primitive) const;
 
  private:

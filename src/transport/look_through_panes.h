@@ -1,4 +1,6 @@
-// Walks that only look for emission any more, behind panes.
+// Continuation of walks straight through panes, for walks that only look for emission. Shadow rays
+// pass panes, so the competing walks must see through them as well. Used by WaveIntegrator and path
+// tracing.
 #pragma once
 
 #include "transport/bsdf_at.h"
@@ -6,8 +8,8 @@
 
 namespace troffer {
 
-// Follows a walk that has met a surface at v straight on while what it meets are panes. Calls
-// see(walk, vertex) for each further surface that it meets, with null where it leaves the scene.
+// Follows a walk from vertex v straight on, as long as it meets panes. Calls see(walk, vertex) for
+// each further surface, with a null vertex if the walk leaves the scene.
 template <class See>
 void look_through_panes(const PreparedScene& scene, Walk walk, Vertex v, const See& see) {
   constexpr int most_panes = 64;

@@ -10,9 +10,9 @@ namespace troffer {
 
 namespace {
 
-// Weights and rays of all points. A ray ends before the light by twice what one that
-// starts there would: the light itself must not count (ended_before_light()). Returns the smallest
-// weight.
+// Computes weights and rays to all points and returns the smallest weight. A ray ends before the
+// light, by twice the offset of a ray that starts there, so that the light does not occlude itself
+// (ended_before_light()).
 TROFFER_MULTIVERSION
 float aim(const MatteReceiver& receiver, size_t n, const float* __restrict x,
           const float* __restrict y, const float* __restrict z, const float* __restrict nx,
@@ -58,7 +58,7 @@ void MatteRays::add(const MatteReceiver& from, const LightPoints& p, Group group
                           p.nz.data(), p.inverse_pdf.data(), w, segments_.end(0), segments_.end(1),
                           segments_.end(2), segments_.end(3), segments_.end(4), segments_.end(5));
   size_t kept = n;
-  if (!(least > 0)) {  // those without weight give up their places
+  if (!(least > 0)) {  // Drop points of zero weight.
     kept = 0;
     for (size_t i = 0; i < n; ++i) {
       if (!(w[i] > 0)) continue;
@@ -73,10 +73,11 @@ void MatteRays::add(const MatteReceiver& from, const LightPoints& p, Group group
   groups_.push_back(group);
 }
 
-// The variance is that of a mean of independent points: stratified ones do better.
+// Adds the light of a group and its variance. The variance is that of a mean of independent points,
+// an upper bound for stratified ones.
 void MatteRays::tell(const Group& g, size_t first, RadianceBatch& out) const {
   float sum = 0, squares = 0;
-  Rgb passed;  // of panes
+  Rgb passed;  // light after panes
   for (size_t i = first; i < g.end; ++i) {
     float w = is_hidden_[i] != 0 ? 0.0f : weights_[i];
     if (!factors_.values.empty()) {

@@ -1,5 +1,5 @@
-// Shadow rays from matte surfaces, gathered over many: a ray brings a number, and what the light of
-// a group of them (those of one vertex to one source) is multiplied by stands beside them once.
+// Batches of shadow rays from matte surfaces. Each ray stores a single weight. The factor that is
+// common to a group of rays, from one vertex to one source, is stored once. Used by SourceSampler.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,18 @@
 
 namespace troffer {
 
-// A matte surface at which rays start, all on the viewer's side of it.
+// A matte surface point; all rays start on the viewer's side of it.
 struct MatteReceiver {
   Vec3 position;
   Vec3 geometric_normal, shading_normal;  // on the viewer's side
-  Vec3 origin;                            // of its rays, clear of the surface
+  Vec3 origin;                            // origin of rays, offset from the surface
 };
 
 class MatteRays {
  public:
-  // What a group carries to the eye: index of the viewing ray, radiance per projected solid angle;
-  // `points` for which its rays stand, of which others have no weight.
+  // Rays from one vertex to one source. `index` is the viewing ray and `carried` the radiance per
+  // projected solid angle. `points` is the sample count, including points of zero weight that have
+  // no ray.
   struct Group {
     uint32_t index = 0, points = 0;
     Rgb carried;
@@ -30,9 +31,9 @@ class MatteRays {
   };
 
   size_t size() const { return segments_.size(); }
-  // Rays to all of the points from which light can arrive.
+  // Adds rays to all points from which light can arrive.
   void add(const MatteReceiver& from, const LightPoints& points, Group group);
-  // Traces all, adds what arrives to `out`, and empties the store.
+  // Traces all rays, adds the light that arrives to `out`, and empties the batch.
   void resolve(const Tracer& tracer, RadianceBatch& out, Counters& counters);
 
  private:

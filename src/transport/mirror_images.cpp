@@ -12,23 +12,25 @@ namespace troffer {
 namespace {
 
 constexpr size_t most_images = 8;
-constexpr size_t most_corners = 8;            // of a mirror
-constexpr size_t most_candidates = 256;       // the largest
-constexpr size_t most_triangles = 2'000'000;  // of all images
-constexpr size_t points_of_mirror = 64;       // at which light is looked at
-constexpr float least_reflectance = 0.2f;     // at normal incidence; else rays do
-constexpr float least_area_of_scene = 1e-4f;  // of a mirror, over the scene's diagonal squared
-constexpr float least_share = 1e-3f;          // of the light that the strongest brings
+constexpr size_t most_corners = 8;            // per mirror
+constexpr size_t most_candidates = 256;       // the largest ones
+constexpr size_t most_triangles = 2'000'000;  // in all images together
+constexpr size_t points_of_mirror = 64;       // sample points for the flux of a mirror
+// at normal incidence; weaker mirrors are left to rays
+constexpr float least_reflectance = 0.2f;
+constexpr float least_area_of_scene = 1e-4f;  // area of a mirror / squared diagonal of the scene
+constexpr float least_share = 1e-3f;          // flux of a mirror / flux of the strongest one
 
 struct Candidate {
   FlatMirror mirror;
   std::vector<uint32_t> triangles;
   bool is_front = true;
   float area = 0;
-  float light = 0;  // flux that it sends on
+  float light = 0;  // reflected flux
 };
 
-// How much of the light a material mirrors that can be asked for in images; 0: it is none.
+// Returns the luminance of the reflectance at normal incidence; 0 if the material cannot have an
+// image.
 float mirrored_share(const PreparedScene& scene, uint32_t material) {
   const Material& m = scene.scene.materials[material];
   if (has_textured_input(m) || m.normal_texture >= 0 || has_own_coat_normal(m) || m.is_alpha_masked)
@@ -38,7 +40,7 @@ float mirrored_share(const PreparedScene& scene, uint32_t material) {
   return luminance(mirrored_reflectance(bsdf, 1));
 }
 
-// Along the normal of its front, as long as the area is large.
+// Returns a vector along the normal of the front, whose length is the area.
 Vec3 vector_area(const std::vector<Vec3>& outline) {
   Vec3 sum;
   for (size_t i = 2; i < outline.size(); ++i)
@@ -46,7 +48,7 @@ Vec3 vector_area(const std::vector<Vec3>& outline) {
   return sum * 0.5f;
 }
 
-// Shading normals of smooth shapes bend what is seen.
+// True if shading normals equal the polygon's normal. Others would bend the reflection.
 bool is_flat_at(const Mesh& mesh, const Triangle& t, const Vec3& normal) {
   if (mesh.normals.empty()) return true;
   for (const uint32_t v : t)
@@ -63,7 +65,7 @@ void add_polygons(const PreparedScene& scene, uint32_t number, float least_area,
     pieces.add(std::array<uint32_t, 3>{welded[t[0]], welded[t[1]], welded[t[2]]});
   const MergedPolygons merged = merge_polygons(
       mesh.positions, pieces, sorted_edges(pieces, mesh.positions.size()), most_corners);
-  // Only large ones are looked at: there may be millions.
+  // A mesh may have millions of polygons; only large ones are candidates.
   std::vector<int32_t> number_of(merged.polygons.size(), -1);
   std::vector<Candidate> all;
   for (size_t p = 0; p < merged.polygons.size(); ++p) {
@@ -94,7 +96,7 @@ void add_polygons(const PreparedScene& scene, uint32_t number, float least_area,
   }
 }
 
-// The plane, and how far the mirror's own points are off it.
+// Sets the mirror's plane and the tolerance for points on it.
 void set_plane(const PreparedScene& scene, FlatMirror& m) {
   Vec3 middle;
   for (const Vec3& p : m.outline) middle = middle + p * (1 / float(m.outline.size()));
@@ -106,7 +108,7 @@ void set_plane(const PreparedScene& scene, FlatMirror& m) {
   m.tolerance = 2 * ray_offset(magnitude);
 }
 
-// The flux that a mirror sends on, by a look at some of its points.
+// Returns the flux that a mirror reflects, estimated at a few points.
 float light_from(const PreparedScene& scene, const Candidate& c, float share) {
   const LightTreeDirect direct(scene);
   WaveHits wave;
@@ -114,7 +116,7 @@ float light_from(const PreparedScene& scene, const Candidate& c, float share) {
   white.diffuse = Rgb{1};
   const std::vector<Vec3>& o = c.mirror.outline;
   for (uint32_t i = 0; i < points_of_mirror; ++i) {
-    // fans of the outline by area
+    // sample the outline's triangle fan by area
     const SobolGroup numbers(hash_of(uint64_t{0x6d69'7272}), 0, i);
     const Vec2 u = numbers.get2(0);
     float at = numbers.get(2) * c.area;
@@ -202,7 +204,7 @@ int32_t MirrorImages::at(const Vertex& v) const {
 
 uint32_t MirrorImages::note_beyond(const Vertex& v, uint32_t note, bool is_scattered,
                                    const Vec3& direction) const {
-  // A mirror: the walk has not been scattered, nor has it gone through.
+  // True mirror reflection: the walk was neither scattered nor transmitted.
   if (note != from_matte || is_scattered) return 0;
   const int32_t image = at(v);
   return image >= 0 && dot(direction, v.geometric_normal) > 0 ? first_image + uint32_t(image) : 0;

@@ -1,4 +1,6 @@
-// A scene with all that is built from it before the first ray.
+// A scene together with all that is built from it before the first ray: BSDF tables, tracer, light
+// primitives, light tree. Every integrator and most of render/ refer to one. It must outlive them.
+// Lengths are in metres.
 #pragma once
 
 #include <memory>
@@ -18,17 +20,18 @@
 
 namespace troffer {
 
-// Levels of all images, which only rays look at.
+// Builds the mip levels of all images. Only rays need them.
 inline Scene with_levels(Scene scene) {
   parallel_for(scene.textures.size(), 0, [&](size_t i) { build_levels(scene.textures[i]); });
   return scene;
 }
 
-// Immutable, as far as can be seen; members refer to each other, so it stays where it was made.
+// Logically immutable and thread-safe. The members refer to each other, so it can be neither copied
+// nor moved.
 struct PreparedScene {
   explicit PreparedScene(Scene s) : PreparedScene(std::move(s), nullptr) {}
   // `relit` is the scene of `base` with other radiances of its lights (with_scaled_lights). Both
-  // share one tracer, so this takes milliseconds where building a tracer takes seconds.
+  // share one tracer, so construction takes milliseconds; building a tracer takes seconds.
   PreparedScene(Scene relit, std::shared_ptr<const PreparedScene> base)
       : scene(with_room_for_tracer(with_levels(std::move(relit)))),
         bsdf_tables(scene),
@@ -52,17 +55,18 @@ struct PreparedScene {
   const PanePlaces panes;
 
  private:
-  const std::shared_ptr<const PreparedScene> base_;  // owns the tracer; null: own_tracer_ does
+  // owner of the tracer; null if own_tracer_ is used
+  const std::shared_ptr<const PreparedScene> base_;
   const std::unique_ptr<Tracer> own_tracer_;
 
  public:
   const Tracer& tracer;
   const LightPrimitives primitives;
-  const std::vector<WebLookup> webs;  // of those of the scene
+  const std::vector<WebLookup> webs;  // of scene.webs
   const LightTree light_tree;
 
-  // Of its lights at infinity; made when first asked for, by any thread: an image takes a while,
-  // and only certified light has a use for them.
+  // Returns the sky patches of lights at infinity. They are built on first use, by any thread: an
+  // image takes a while, and only certified light needs them.
   const FarCells& far_cells() const {
     std::call_once(are_far_cells_made_, [&] { far_cells_.emplace(scene, primitives); });
     return *far_cells_;

@@ -12,7 +12,8 @@ namespace troffer {
 
 namespace {
 
-// Measured: of 13 lights in a hall, asking all took more time than it saved noise.
+// With more lights, evaluating all of them costs more time than the lower noise saves: measured
+// with 13 lights in a hall.
 constexpr size_t fewest_lights = 2, most_lights = 8;
 
 }  // namespace
@@ -38,8 +39,8 @@ void ResampledDirectScratch::resize(size_t n) {
   is_valid.resize(n);
 }
 
-// The hits that take part, and their numbers: all lights by the same two, so that over the samples
-// of a pixel the points on each of them are stratified.
+// Collects the hits that take part and their random numbers. All lights share two numbers per hit,
+// so that points on each light are stratified over the samples of a pixel.
 void ResampledDirect::begin(const WaveHits& wave, ResampledDirectScratch& s) const {
   s.resize(wave.size());
   size_t m = 0;
@@ -73,14 +74,13 @@ void ResampledDirect::begin(const WaveHits& wave, ResampledDirectScratch& s) con
 
 namespace {
 
-// What a point on a light would bring to a surface if nothing were in the way, up to what its
-// points on all lights share: exact where the surface is Lambertian; others are asked as if they
-// were, without the share that is left to the path. Never 0 where something may arrive. own_pdf:
-// the path's own, over the cosine.
+// Returns the unoccluded light of a point on a light, up to a factor that is common to all lights.
+// It is exact for Lambertian surfaces, and others are treated as Lambertian. It is positive
+// wherever light may arrive. own_pdf: density of the path's own direction / cosine.
 TROFFER_ALWAYS_INLINE float promise(float radiance, float cosine, float both_sides,
                                     float inverse_pdf, float own_pdf) {
   const float c = std::max(cosine, -cosine * both_sides);
-  const float ratio = own_pdf * c * inverse_pdf;  // to the point's: the power heuristic
+  const float ratio = own_pdf * c * inverse_pdf;  // ratio of the densities, for the power heuristic
   return radiance * c * inverse_pdf / (1 + ratio * ratio);
 }
 
@@ -102,7 +102,7 @@ void promises_of(size_t n, float radiance, const float* __restrict cosine,
 
 }  // namespace
 
-// What a point of this light promises to every hit.
+// Computes the unoccluded light of one light's points at every hit.
 void ResampledDirect::ask(const WaveHits& wave, uint32_t light, ResampledDirectScratch& s) const {
   const size_t m = s.hits.size();
   const LightPrimitive& p = scene_.primitives[light];
@@ -123,8 +123,8 @@ void ResampledDirect::ask(const WaveHits& wave, uint32_t light, ResampledDirectS
   }
 }
 
-// One light for every hit, in proportion to what its points promise. Hits that are promised nothing
-// drop out.
+// Picks one light for every hit, in proportion to the unoccluded light of its point. Drops hits
+// that receive none.
 void ResampledDirect::pick(ResampledDirectScratch& s) const {
   const size_t m = s.hits.size(), lights = scene_.primitives.size();
   size_t kept = 0;

@@ -7,7 +7,7 @@ namespace troffer {
 
 namespace {
 
-// The share of light that does not meet a blended mesh where it is hit.
+// Returns the share of light that passes a blended mesh at a hit.
 float uncovered(const Scene& scene, const MeshInWorld& in_world, const Hit& hit) {
   const Mesh& mesh = in_world.mesh();
   Vec2 uv{0, 0};
@@ -33,7 +33,7 @@ Rgb SceneGlass::transmittance(const Ray& ray, const Hit& hit) const {
   at.t *= distance;
   Vertex v;
   make_vertex(scene_, unit, at, v);
-  if (!is_pane(v.surface.material)) return Rgb{1};  // a sphere or disk beside panes
+  if (!is_pane(v.surface.material)) return Rgb{1};  // a sphere or disk that is not a pane
   const Bsdf bsdf = make_bsdf(tables_, scene_, v.surface.material, v.surface.uv, v.is_front);
   return straight_transmittance(bsdf, v.wo.z);
 }

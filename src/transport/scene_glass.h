@@ -1,4 +1,6 @@
-// The panes of a scene: clear thin glass, by its materials.
+// PaneGlass of a scene: tells the tracer which materials are panes (clear thin glass), and how much
+// light passes a pane or a blended surface. Part of PreparedScene. Transmittances are per RGB
+// channel, in [0,1].
 #pragma once
 
 #include "bsdf/bsdf.h"

@@ -1,5 +1,5 @@
-// The visibility of a source from one point, on a lattice of 8 × 8 cells. Neighbouring points are
-// compared by it; kj92/bintree_pattern.h makes it from a bintree.
+// Visibility of a source from one point, on a lattice of 8 × 8 cells. kj92 compares neighbouring
+// points by it; kj92/bintree_pattern.h makes it from a bintree.
 // References: [1] Kok & Jansen, "Adaptive Sampling of Area Light Sources in Ray Tracing Including
 //   Diffuse Interreflection", Eurographics '92, §5 (patterns of neighbouring rays are compared).
 #pragma once
@@ -11,8 +11,8 @@
 
 namespace troffer {
 
-// Bit 8 row + column, columns along u. A cell all of whose rays found light is lit, one all of
-// whose rays found shadow is dark; one with both is neither.
+// Bit 8 row + column, with columns along u. A cell is lit if all its rays found light, dark if all
+// found shadow, and mixed if it is neither.
 struct ShadowPattern {
   static constexpr int side = 8;
   static constexpr int cells = side * side;
@@ -23,13 +23,13 @@ struct ShadowPattern {
   bool operator==(const ShadowPattern&) const = default;
 };
 
-// Cells in which the two do not say the same, or in which either says nothing definite.
+// Returns the cells that are not lit in both or dark in both.
 inline uint64_t cells_in_doubt(const ShadowPattern& a, const ShadowPattern& b) {
   return ~((a.lit & b.lit) | (a.dark & b.dark));
 }
 
-// Share of the source that one saw and the other did not; a mixed cell counts half against a
-// definite one.
+// Returns the share of the source on which the two disagree. A mixed cell counts as half a
+// disagreement with a lit or dark one.
 inline float pattern_difference(const ShadowPattern& a, const ShadowPattern& b) {
   const uint64_t opposite = (a.lit & b.dark) | (a.dark & b.lit);
   const uint64_t half = a.mixed() ^ b.mixed();
@@ -37,7 +37,7 @@ inline float pattern_difference(const ShadowPattern& a, const ShadowPattern& b) 
          float(ShadowPattern::cells);
 }
 
-// Cell 0 … 63 in (u,v).
+// Returns the bounds in (u,v) of cell 0 … 63.
 inline SourceCell pattern_cell(int cell) {
   const int column = cell % ShadowPattern::side, row = cell / ShadowPattern::side;
   constexpr float size = 1.0f / ShadowPattern::side;

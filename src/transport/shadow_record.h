@@ -1,5 +1,5 @@
-// What is kept of a viewing ray for comparison with its neighbours: the object it met, and how each
-// sampled source was seen from there.
+// Data of a viewing ray for comparison with its neighbours: the object that it met, and the
+// visibility of each sampled source from there.
 // References: [1] Painter & Sloan, "Antialiased Ray Tracing by Adaptive Progressive Refinement",
 //   SIGGRAPH 1989. [2] Kok & Jansen, Eurographics '92, §5 (patterns of neighbours).
 #pragma once
@@ -17,7 +17,7 @@ namespace troffer {
 
 struct SourcePattern {
   uint32_t source = 0;
-  float weight = 0;  // luminance that it would send on if nothing were in the way
+  float weight = 0;  // luminance of the reflected unoccluded light of the source
   ShadowPattern pattern;
 };
 
@@ -35,19 +35,20 @@ struct ShadowRecord {
   }
 };
 
-// The same side of the same object, facing about the same way (within 25 degrees).
+// True if both are on the same side of the same object, with normals within 25 degrees.
 bool is_same_surface(const ShadowRecord& a, const ShadowRecord& b);
 
 // Records of nearby viewing rays; unused ones are null.
 using NeighbourRecords = std::array<const ShadowRecord*, 5>;
 
-// The cells of a source about which the neighbours on the same surface agree, as a pattern: lit,
-// dark, or (neither) to be asked by rays. False where fewer than two of them know the source.
+// Finds the cells of a source on which all neighbours on the same surface agree. A cell that is
+// neither lit nor dark in `agreed` needs rays. Returns false if fewer than two neighbours know the
+// source.
 bool agreed_pattern(std::span<const ShadowRecord* const> neighbours, const ShadowRecord& here,
                     uint32_t source, ShadowPattern& agreed);
 
-// The light that the patterns of two rays on the same surface disagree about: the sum over sources
-// of weight × share of the source, luminance of radiance.
+// Returns the luminance of the light on which the patterns of two rays disagree: the sum over
+// sources of weight × pattern_difference().
 float pattern_contrast(const ShadowRecord& a, const ShadowRecord& b);
 
 }  // namespace troffer

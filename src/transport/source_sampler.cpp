@@ -10,12 +10,12 @@ namespace troffer {
 
 namespace {
 
-// Shadow rays are traced when so many have gathered.
+// Numbers of shadow rays that are traced together.
 constexpr size_t shadow_batch = 8192;
-constexpr size_t matte_batch = 2048;  // what fits the second-level cache
+constexpr size_t matte_batch = 2048;  // fits the second-level cache
 
-// The order in which numbers of a Sobol block increase. In one whose size is a power of two there
-// is one number to each of n equal parts of [0,1).
+// Sorts the numbers of a Sobol block. A block of 2^k numbers has one number in each of its 2^k
+// equal intervals, so a bucket per interval suffices.
 void sort_numbers(const float* numbers, uint32_t n, std::vector<uint32_t>& order) {
   order.resize(n);
   if (std::has_single_bit(n)) {
@@ -59,15 +59,15 @@ SourceSampler::SourceSampler(const PreparedScene& scene) : scene_(scene) {
   }
 }
 
-// A piece of the light for each of the next n samples of the pixel, with the numbers by which a
-// point on it is to be chosen: s.primitives, s.pmfs, s.u, s.v. Those for which there is none are
-// left out. Those that lie close to each other come together. Returns how many there are.
+// Chooses a piece of the light for each of the next n samples of the pixel, and the random numbers
+// of a point on it. Sets s.primitives, s.pmfs, s.u and s.v. Leaves out samples without a piece and
+// returns the number of the others. Neighbouring entries have neighbouring pieces.
 uint32_t SourceSampler::choose_pieces(const SampledVertex& at, uint32_t light, uint32_t n,
                                       SourceSamplerScratch& s) const {
   const LightPrimitives::Range pieces = scene_.primitives.of_light(light);
   const bool is_one = pieces.last - pieces.first == 1;
   s.resize(n);
-  // Other numbers of rays have other sequences: pictures of two settings err independently.
+  // The stream depends on n, so that pictures with different numbers of rays err independently.
   const uint64_t stream = hash_combine(hash_combine(at.walk.stream, light + 1), n);
   s.blocks_of(n).draw(stream, purpose_light(at.walk.vertex), at.walk.sample, is_one ? 2 : 3,
                       s.numbers.data());
@@ -86,7 +86,7 @@ uint32_t SourceSampler::choose_pieces(const SampledVertex& at, uint32_t light, u
   uint32_t chosen = 0;
   for (uint32_t i = 0; i < n; ++i) {
     const LightChoice& choice = s.choices[i];
-    if (choice.pmf == 0) continue;  // of these primitives none can send light here
+    if (choice.pmf == 0) continue;  // none of these primitives can send light here
     s.primitives[chosen] = choice.primitive;
     s.pmfs[chosen] = choice.pmf;
     s.u[chosen] = s.numbers[s.order[i]];
@@ -96,7 +96,7 @@ uint32_t SourceSampler::choose_pieces(const SampledVertex& at, uint32_t light, u
   return chosen;
 }
 
-// Points on the light; returns how many there are.
+// Samples points on the light and returns their number.
 uint32_t SourceSampler::choose_points(const SampledVertex& at, uint32_t light, uint32_t n,
                                       SourceSamplerScratch& s) const {
   const uint32_t chosen = choose_pieces(at, light, n, s);
@@ -106,14 +106,14 @@ uint32_t SourceSampler::choose_points(const SampledVertex& at, uint32_t light, u
   return chosen;
 }
 
-// Light of one radiance, and a surface that sends the same on from everywhere and competes with
-// nothing: a ray brings a cosine over a density.
+// True if a ray's light is a constant times a cosine over a density. The light must have uniform
+// radiance, the surface must be Lambertian, and no BSDF sample may compete.
 bool SourceSampler::is_matte(const SampledVertex& at, uint32_t light) const {
   return is_even_[light] && at.competing == nullptr && at.alone != nullptr &&
          is_lambertian(*at.alone, nullptr);
 }
 
-// The same for a matte surface and a light of one radiance: s.matte_points. False where none can
+// The same as choose_points() for is_matte(): sets s.matte_points. Returns false if no point can
 // send light.
 bool SourceSampler::choose_matte_points(const SampledVertex& at, uint32_t light, uint32_t n,
                                         SourceSamplerScratch& s) const {
@@ -152,7 +152,7 @@ void SourceSampler::sample(const SampledVertex& at, uint32_t light, uint32_t n,
     if (s.matte.size() >= matte_batch) s.matte.resolve(scene_.tracer, out, counters);
     return;
   }
-  if (is_delta_[light]) n = 1;  // one point is all there is
+  if (is_delta_[light]) n = 1;  // a delta light has only one point
   const uint32_t chosen = choose_points(at, light, n, s);
   for (uint32_t j = 0; j < chosen; ++j) {
     if (s.is_valid[j] == 0) continue;
@@ -173,7 +173,7 @@ void SourceSampler::sample(const SampledVertex& at, uint32_t light, uint32_t n,
     if (is_connected) s.shadows.add(c.shadow_ray, carried, at.walk.index, at.is_direct);
   }
   s.shadows.end_group(n);
-  // Rays of one vertex to one source stand side by side: packets pay.
+  // Rays from one vertex to one source are adjacent, so ray packets pay off.
   if (s.shadows.rays.size() >= shadow_batch) resolve(s, out, counters);
 }
 

@@ -1,5 +1,6 @@
 // A fixed number of Owen-Sobol shadow rays from a vertex to a source, spread over the source by
-// solid angle: what fixed does for all sources, and certified for those it has no certificates for.
+// solid angle. FixedDirect samples all sources this way, certified light those without
+// certificates.
 #pragma once
 
 #include <vector>
@@ -21,22 +22,22 @@ struct SourceSamplerScratch {
   std::vector<LightSample> points;
   std::vector<uint8_t> is_valid;
   LightSampleScratch lights;
-  MatteRays matte;  // those of matte surfaces
+  MatteRays matte;  // rays of matte surfaces
   LightPoints matte_points;
 
   void resize(size_t n);
   const SobolBlocks& blocks_of(uint32_t n);
 };
 
-// A vertex and what of its surface the rays light.
+// A vertex, and the parts of its BSDF that the rays illuminate.
 struct SampledVertex {
   const Walk& walk;
   const Vertex& vertex;
-  // Lit by these rays alone; null: nothing is.
+  // Part that only these rays illuminate; may be null.
   const Bsdf* alone = nullptr;
-  // Sends rays of its own as well, one sample drawn from all of it: the power heuristic.
+  // Part that is also sampled by one BSDF sample, so that the power heuristic applies; may be null.
   const Bsdf* competing = nullptr;
-  bool has_transmission = false;  // of either
+  bool has_transmission = false;  // of either part
   bool is_direct = true;          // the light counts as direct
 };
 
@@ -47,16 +48,17 @@ class SourceSampler {
   uint32_t lights() const { return uint32_t(trees_.size()); }
   bool is_empty(uint32_t light) const { return trees_[light].is_empty(); }
 
-  // Adds n shadow rays to a light that is not empty, one to a delta light. They are traced, and
-  // their light added to `out`, once many have gathered and by resolve().
+  // Adds n shadow rays to a light that is not empty, or one to a delta light. Traces the rays, and
+  // adds their light to `out`, when a batch is full.
   void sample(const SampledVertex& at, uint32_t light, uint32_t n, SourceSamplerScratch& s,
               RadianceBatch& out, Counters& counters) const;
+  // Traces all rays that wait and adds their light to `out`.
   void resolve(SourceSamplerScratch& s, RadianceBatch& out, Counters& counters) const;
 
-  // The weight of emission that a walk has run into at v, against n rays to that light from the
-  // vertex before; 1 where the walk competes with none.
+  // Returns the weight of emission that a walk has hit at v, against n shadow rays to that light
+  // from the previous vertex; 1 if no sampling competes.
   float emission_weight(const Walk& walk, const Vertex& v, uint32_t n) const;
-  // The same for a light at infinity that a walk has left the scene towards.
+  // The same for a light at infinity that a walk sees as it leaves the scene.
   float miss_weight(const Walk& walk, uint32_t primitive, uint32_t n) const {
     return troffer::miss_weight(scene_, walk, primitive, float(n));
   }
@@ -75,7 +77,7 @@ class SourceSampler {
   const PreparedScene& scene_;
   std::vector<LightTree> trees_;  // per light, over its primitives
   std::vector<bool> is_delta_;    // per light
-  std::vector<bool> is_even_;     // per light: surfaces of one radiance
+  std::vector<bool> is_even_;     // per light: all its primitives are surfaces of uniform radiance
 };
 
 }  // namespace troffer

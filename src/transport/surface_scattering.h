@@ -1,5 +1,7 @@
-// How the 1992 method splits what a surface does with light: the diffuse part is lit by the
-// general radiosity value and by shadow rays, the specular part by spawned viewing rays.
+// A BSDF split into a diffuse and a specular part, as in [1]. Shadow rays and the general radiosity
+// (or cells) illuminate the diffuse part; spawned viewing rays sample the specular part. Used by
+// kj92, certified light and gather rays.
+// References: [1] Kok & Jansen, Eurographics '92 (docs/kj92.md).
 #pragma once
 
 #include "base/units.h"
@@ -8,19 +10,19 @@
 namespace troffer {
 
 struct SurfaceScattering {
-  Bsdf whole;     // as make_bsdf made it
+  Bsdf whole;     // the BSDF of make_bsdf()
   Bsdf diffuse;   // diffuse_part
-  Bsdf specular;  // specular_part; unset where is_lambertian
+  Bsdf specular;  // specular_part; not set if is_lambertian
   bool is_lambertian = true;
   bool has_diffuse = true;
-  bool has_specular = false;  // anything to spawn viewing rays for
-  bool has_rough = false;     // … of which some is not a mirror: sources are sampled for it too
+  bool has_specular = false;  // the specular part is not empty
+  bool has_rough = false;     // some of it is not a mirror, so sources are sampled for it as well
 
   bool is_gathered = false;  // gather_gloss() was called
-  // What the coat takes of a source's light may be taken for all of it as at a few of its points.
+  // The coat's transmittance at a few points of a source may stand for the whole source.
   bool is_low_variance = false;
 
-  // Light that arrives from behind goes through, other than straight on.
+  // True if light from behind is scattered through the surface.
   bool is_transmitting() const { return has_rough && specular.has_transmission; }
 
   explicit SurfaceScattering(const Bsdf& bsdf) : whole(bsdf) {
@@ -33,27 +35,26 @@ struct SurfaceScattering {
     has_rough = has_specular && !is_purely_delta(specular);
   }
 
-  // Whether the specular part is so wide that directions by a cosine sample it well: their second
-  // moment is about (1 + 1 / (4 alpha²)) times that of directions of its own.
+  // True if the specular part is so wide that cosine-distributed directions sample it well. Their
+  // second moment is about (1 + 1 / (4 alpha²)) times that of directions sampled from the lobe.
   bool is_wide() const {
     constexpr float least_width = 0.2f;
     return has_rough && !whole.has_transmission && glossy_alpha(specular) >= least_width;
   }
-  // Whether, seen at this cosine, it shows some directions for so much more than others that points
-  // of sources, chosen as for a matte surface, seldom are where it looks.
+  // True if the lobe at this cosine is so narrow that points of sources that are chosen as for a
+  // matte surface seldom fall into it.
   bool is_peaked(float cosine) const {
     constexpr float least_peak = 8;
     return 1 > least_peak * 4 * sqr(glossy_alpha(specular)) * cosine;
   }
-  // No ray is spawned: what `specular` does is asked for with the diffuse part, which then is the
-  // whole.
+  // Moves the specular part into `diffuse`, which becomes the whole BSDF. No ray is spawned.
   void gather_gloss() {
     is_gathered = has_diffuse = true;
     has_specular = has_rough = false;
     diffuse = whole;
   }
-  // So, seen at this cosine; but where it is peaked, `diffuse` remains what it is, and a ray is
-  // spawned that looks for sources alone, in competition with points of these.
+  // The same at a given cosine. If the lobe is peaked there, `diffuse` is unchanged, and the
+  // spawned ray only looks for sources, in competition with points sampled on them.
   void gather_gloss(float cosine) {
     if (is_peaked(cosine))
       is_gathered = has_diffuse = true;

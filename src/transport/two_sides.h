@@ -1,5 +1,6 @@
-// Surfaces that light passes evenly, such as curtains: where a ray meets one there are two
-// vertices, one on either side, each with its part of what the surface does.
+// Surfaces that transmit light diffusely, such as curtains. A hit on one gives two vertices, one on
+// either side, each with its part of the BSDF. WaveIntegrator and gather rays follow both; path
+// tracing chooses one.
 #pragma once
 
 #include "base/random.h"
@@ -13,7 +14,7 @@ inline bool has_two_sides(const Bsdf& bsdf) {
   return !bsdf.through.is_black();
 }
 
-// The far side of v, as seen by a viewer who stands there as the viewer of v does here.
+// Returns v as seen from the far side, by a viewer in the mirrored position.
 inline Vertex far_side(const Vertex& v) {
   Vertex far = v;
   far.geometric_normal = v.geometric_normal * -1.0f;
@@ -22,13 +23,13 @@ inline Vertex far_side(const Vertex& v) {
   return far;
 }
 
-// Numbers for what happens on the far side: not those of this one.
+// Returns a random stream for the far side that is independent of this side's.
 inline uint64_t far_stream(uint64_t stream) {
   return hash_of(stream, uint64_t{0x6661'7220'7369'6465});
 }
 
-// Takes the far side's part from `bsdf`, which keeps this one's; `walk` and `far` become those of
-// the far side.
+// Moves the far side's part out of `bsdf` and returns it. Sets `far` and `walk`'s stream to those
+// of the far side.
 inline Bsdf take_far_side(const Vertex& v, Bsdf& bsdf, Walk& walk, Vertex& far) {
   far = far_side(v);
   walk.stream = far_stream(walk.stream);
@@ -37,7 +38,7 @@ inline Bsdf take_far_side(const Vertex& v, Bsdf& bsdf, Walk& walk, Vertex& far) 
   return part;
 }
 
-// One of the two sides, each as often as it sends light on.
+// Chooses one of the two sides with probability proportional to its albedo.
 inline void choose_side(Walk& walk, Vertex& v, Bsdf& bsdf) {
   const Bsdf part = through_part(bsdf);
   bsdf.through = Rgb{0};

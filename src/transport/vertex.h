@@ -1,4 +1,6 @@
-// A path's vertex: the surface hit, seen from where the path comes from.
+// A vertex of a path: the surface hit, with frame and normals on the side from which the path
+// comes. Also sensors, which are vertices without a hit. Used by all integrators. Positions are in
+// world space, metres; normals are unit vectors.
 #pragma once
 
 #include "base/frame.h"
@@ -7,16 +9,16 @@
 
 namespace troffer {
 
-// Frames and normals are turned to the viewer's side.
+// Frames and normals are on the viewer's side.
 struct Vertex {
   Surface surface;
   Frame frame;            // shading frame, z on the viewer's side
   Vec3 geometric_normal;  // on the viewer's side
-  Vec3 wo;                // local, towards the viewer
+  Vec3 wo;                // unit direction to the viewer, local frame
   bool is_front = true;   // the viewer is on the surface's front
 
-  // False where shading and geometric normal disagree on which side a direction (in world space and
-  // in the local frame) lies: such light would leak through the surface.
+  // True if the shading and the geometric normal agree on which side a direction lies, given in
+  // world space and in the local frame. Otherwise light would leak through the surface.
   bool is_consistent(const Vec3& world, const Vec3& local) const {
     return dot(world, geometric_normal) * local.z > 0;
   }
@@ -35,8 +37,8 @@ inline void face_viewer(Vertex& v, const Vec3& ray_direction) {
   v.wo = v.frame.to_local(towards_viewer);
 }
 
-// The vertex where a ray of unit direction meets the surface, or hits the scene (in place: vertices
-// are large).
+// Returns the vertex where a ray of unit direction meets a surface. The second form computes the
+// surface from a hit and works in place, since vertices are large.
 inline Vertex make_vertex(const Surface& surface, const Vec3& ray_direction) {
   Vertex v;
   v.surface = surface;
@@ -49,7 +51,7 @@ inline void make_vertex(const Scene& scene, const Ray& ray, const Hit& hit, Vert
   face_viewer(v, ray.direction);
 }
 
-// A point whose irradiance is asked for, as a vertex seen from straight above …
+// Returns a sensor as a vertex that is seen along its normal.
 inline Vertex make_sensor_vertex(const Vec3& position, const Vec3& normal, float offset) {
   Vertex v;
   v.surface.position = position;
@@ -59,7 +61,8 @@ inline Vertex make_sensor_vertex(const Vec3& position, const Vec3& normal, float
   v.wo = {0, 0, 1};
   return v;
 }
-// … and its surface: Lambertian of reflectance pi, so that what it sends on is the irradiance.
+// Returns the BSDF of a sensor: Lambertian with reflectance pi, so that reflected radiance equals
+// irradiance.
 inline Bsdf sensor_bsdf() {
   Bsdf b;
   b.is_lambertian = b.has_separable = true;

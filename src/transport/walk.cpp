@@ -115,7 +115,7 @@ bool step(Walk& walk, const Vertex& v, const Bsdf& bsdf, float lobe, const Vec2&
   ++walk.vertex;
   if (sampled.is_delta) return true;
   ++walk.scatterings;
-  walk.cone = {};  // directions are drawn: the mean over them is the surface's
+  walk.cone = {};  // directions are random, so their mean averages over the footprint
   return true;
 }
 
@@ -145,8 +145,8 @@ bool mirror_at_pane(Walk& walk, const Vertex& v, const Bsdf& bsdf) {
 }
 
 float chance_of_spawning(const Walk& walk, const Rgb& carried, float threshold) {
-  // Between white metals throughput alone would hardly ever end a walk: from this vertex on some 5
-  // % end all the same. To end all of them would lose the light of all further bounces.
+  // Between white metals throughput alone would hardly ever end a walk, so 5 % of long walks end at
+  // each vertex. Ending all of them would lose the light of further bounces.
   constexpr uint32_t long_walk = 24;
   constexpr float long_walk_survival = 0.95f;
   const float most = walk.vertex < long_walk ? 1 : long_walk_survival;
@@ -198,7 +198,8 @@ void ShadowBatch::add(const Ray& ray, Rgb contribution, uint32_t index, bool dir
   is_direct.push_back(direct ? 1 : 0);
 }
 
-// That of a mean of independent points: stratified ones do better.
+// Adds the variance of each group to direct_variance. It is that of a mean of independent points,
+// an upper bound for stratified ones.
 void ShadowBatch::enable_variance(RadianceBatch& out) const {
   size_t i = 0;
   for (const Group& g : groups) {

@@ -1,4 +1,5 @@
-// Hits of one wave of walks, as methods get them: those at which light is asked for, side by side.
+// Hits of one wave of walks, as arrays for DirectLight and IndirectLight, and the emission that
+// walks have hit. WaveIntegrator fills both; path tracing and gather rays use the same types.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +12,23 @@
 
 namespace troffer {
 
-// Plain arrays of one length, but for those that say when they are empty. A few dozen hits: what is
-// known of them fits the caches.
+// Hits at which light is to be computed, as arrays of one length; some may be empty as noted. At
+// most a few dozen, so that their data stay in the caches.
 struct WaveHits {
-  std::vector<Walk> walks;  // that have arrived; notes may be left in them
-  std::vector<Hit> hits;    // empty: sensors, which no ray has hit
+  std::vector<Walk> walks;  // walks that have arrived; integrators may leave notes in them
+  std::vector<Hit> hits;    // empty for sensors, which no ray has hit
   std::vector<Vertex> vertices;
-  std::vector<Bsdf> bsdfs;                     // of methods that take surfaces whole, or
-  std::vector<SurfaceScattering> scatterings;  // … of those that take them apart; else empty
-  // How often walks go on from them, over how often lights are drawn for them; empty: as often.
+  std::vector<Bsdf> bsdfs;                     // for methods that use whole BSDFs; else empty
+  std::vector<SurfaceScattering> scatterings;  // for methods that split them; else empty
+  // Probability that the walk continues, over the probability that a light is sampled; empty: 1.
   std::vector<float> going_on;
-  // Where the hits lie on the radiosity mesh; empty until somebody asks (RadiosityLight::places).
+  // Positions of the hits on the radiosity mesh; empty until RadiosityLight::places fills them.
   std::vector<RadiosityPlace> places;
-  const ViewingRays* viewing = nullptr;  // of the batch; null: sensors
+  const ViewingRays* viewing = nullptr;  // rays of the batch; null for sensors
 
   size_t size() const { return walks.size(); }
   const Bsdf& bsdf(size_t i) const { return scatterings.empty() ? bsdfs[i] : scatterings[i].whole; }
-  // Hit i of another wave of the same method.
+  // Appends hit i of another wave of the same method.
   void take(const WaveHits& other, size_t i) {
     walks.push_back(other.walks[i]);
     if (!other.hits.empty()) hits.push_back(other.hits[i]);
@@ -48,19 +49,20 @@ struct WaveHits {
   }
 };
 
-// Light straight from sources counts as direct at the first surface, and at what mirrors and clear
-// glass show.
+// True if light from sources at the walk's vertex counts as direct: at the first surface, seen
+// directly or by way of mirrors and clear glass.
 inline bool is_direct_at(const Walk& walk) {
   return walk.scatterings == 0;
 }
 
-// What walks have run into: emission of a surface, or of what lies beyond the scene.
+// Emission that walks have hit, on surfaces or at infinity.
 struct SeenEmission {
   std::vector<const Walk*> walks;
-  std::vector<const Vertex*> vertices;  // where; null: the ray has left the scene
+  std::vector<const Vertex*> vertices;  // vertex of the hit; null if the ray has left the scene
   std::vector<Rgb> radiance;
-  std::vector<uint32_t> at_infinity;  // the light primitive, where the ray has left the scene
-  std::vector<float> weights;  // to be set: against the sampling of sources from the vertex before
+  std::vector<uint32_t> at_infinity;  // light primitive, if the ray has left the scene
+  // MIS weight against the sampling of sources at the previous vertex; set by DirectLight::weigh
+  std::vector<float> weights;
 
   size_t size() const { return walks.size(); }
   void clear() {

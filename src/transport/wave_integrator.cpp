@@ -12,13 +12,13 @@ namespace troffer {
 
 namespace {
 
-// Of walks that no roulette ends: mirrors facing each other would reflect for ever.
+// Limit for walks without Russian roulette: facing mirrors would reflect forever.
 constexpr uint32_t longest_chain = 64;
-constexpr uint32_t most_divisions = 3;  // of a viewing ray at panes, one after the other
-// Hits that go to a method at a time: few enough for what is known of them to stay in the caches.
+constexpr uint32_t most_divisions = 3;  // splits of a viewing ray at successive panes
+// Hits that a method gets at a time, few enough for their data to stay in the caches.
 constexpr size_t hits_at_a_time = 64;
 
-// Of a surface that light passes evenly, behind what was hit.
+// The far side of a diffusely transmitting surface that was hit.
 struct FarSide {
   FarSide(const Walk& w, const Hit& h) : walk(w), hit(h) {}
   Walk walk;
@@ -31,14 +31,14 @@ struct FarSide {
 
 struct WaveIntegrator::Scratch final : IntegratorScratch {
   std::unique_ptr<DirectLightScratch> direct;
-  std::unique_ptr<IndirectLightScratch> indirect;  // null: there is none
+  std::unique_ptr<IndirectLightScratch> indirect;  // null if there is no indirect light
   std::vector<Walk> walks, next_walks;
   WalkScratch trace;
   WaveHits wave;
   std::vector<FarSide> far;
-  SeenEmission seen;       // what competes with the sampling of sources
-  SeenEmission undivided;  // what does not
-  // Behind panes: what those refer to.
+  SeenEmission seen;       // emission in competition with the sampling of sources
+  SeenEmission undivided;  // emission without competition
+  // Storage for walks and vertices behind panes that seen and undivided point to.
   std::deque<Walk> beyond_walks;
   std::deque<Vertex> beyond;
 };
@@ -63,7 +63,7 @@ void WaveIntegrator::begin(const SampleRequest& request, Scratch& s, RadianceBat
   direct_->begin(request, *s.direct);
   if (indirect_) indirect_->begin(request, *s.indirect);
   if (direct_->tells_variance()) out.enable_variance();
-  // All there is, is told.
+  // Direct variance then covers all light.
   if (!indirect_ && has_surrogates_) out.indirect_with_error.assign(out.direct.size(), 0);
 }
 
@@ -96,7 +96,7 @@ void WaveIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& scratc
   }
 }
 
-// As radiance(), up to where light would be asked for.
+// Traces viewing rays like radiance(), but only looks up known light at first hits.
 void WaveIntegrator::surrogate_radiance(const ViewingRays& rays, IntegratorScratch& scratch,
                                         RadianceBatch& out, Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
@@ -144,7 +144,7 @@ void WaveIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& s
   if (indirect_) indirect_->gather(sensors, *s.indirect, out, counters);
 }
 
-// From the hits of some walks to vertices; what they have run into is added to `out`.
+// Computes the vertices of some walks' hits, and adds the emission that they meet to `out`.
 void WaveIntegrator::arrive(size_t first, size_t last, Scratch& s, RadianceBatch& out) const {
   WaveHits& w = s.wave;
   w.clear();
@@ -175,7 +175,7 @@ void WaveIntegrator::arrive(size_t first, size_t last, Scratch& s, RadianceBatch
   add_emission(s, out);
 }
 
-// What a walk sees that is not followed from here on.
+// Records emission behind panes for a walk that ends at v.
 void WaveIntegrator::see_through_panes(const Walk& walk, const Vertex& v, Scratch& s) const {
   look_through_panes(scene_, walk, v, [&](const Walk& beyond, const Vertex* seen) {
     const Walk& kept = s.beyond_walks.emplace_back(beyond);
@@ -202,8 +202,8 @@ void WaveIntegrator::add_emission(Scratch& s, RadianceBatch& out) const {
   for (const SeenEmission* seen : {&s.undivided, &s.seen})
     for (size_t i = 0; i < seen->size(); ++i) {
       const Walk& walk = *seen->walks[i];
-      // Straight from a source: by mirrors and clear glass, or by the one rough surface it is seen
-      // in.
+      // Emission counts as direct if at most one rough surface scattered the walk, and that vertex
+      // sampled sources.
       const bool is_direct = is_direct_at(walk) || (walk.scatterings == 1 && walk.pdf > 0);
       if (!is_direct && !indirect_) continue;
       const Rgb light = walk.throughput * seen->radiance[i] * seen->weights[i];
@@ -213,11 +213,11 @@ void WaveIntegrator::add_emission(Scratch& s, RadianceBatch& out) const {
     }
 }
 
-// Keeps the hits at which light is asked for, with what their surfaces do with it.
+// Keeps the hits at which light is computed, and their BSDFs.
 void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
   WaveHits& w = s.wave;
   const bool is_whole = direct_->walked_part() == WalkedPart::whole;
-  // What is gathered is by pixels.
+  // Gather records are per pixel.
   const bool gathers_gloss = indirect_ && indirect_->gathers_gloss() && !w.viewing->pixels.empty();
   const auto add_parts = [&](const Walk& walk, const SurfaceScattering& parts, float cosine) {
     SurfaceScattering& scattering = w.scatterings.emplace_back(parts);
@@ -263,9 +263,8 @@ void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
   }
 }
 
-// The next viewing rays: those that the hits' surfaces spawn. At the first panes both that which
-// goes straight on and that which is reflected, each by its share: what is seen through a window is
-// not to be noisy for what it mirrors.
+// Sends the walks on to the next wave. At the first few panes a walk is split into the transmitted
+// and the reflected part. The view through a window then has no noise from the choice between them.
 void WaveIntegrator::step_on(Scratch& s) const {
   const bool is_whole = direct_->walked_part() == WalkedPart::whole;
   CheckItems items;

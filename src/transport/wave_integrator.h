@@ -1,14 +1,15 @@
-// Walk × direct light × indirect light: what all methods but path tracing have in common.
+// Integrator made of walks, a DirectLight and an IndirectLight. All methods except path tracing use
+// it.
 //
 // Viewing rays, and the rays that mirrors, glass and gloss spawn, are followed in waves:
 //
 //     walks → hits → vertices, or beyond the scene     trace/, vertex.h
-//       → emission that they have run into             SeenEmission, DirectLight::weigh
-//       → hits at which light is asked for             WaveHits, a few dozen at a time
+//       → emission that they hit                       SeenEmission, DirectLight::weigh
+//       → hits at which light is computed              WaveHits, a few dozen at a time
 //       → light straight from sources                  DirectLight::queue
 //       → light that was reflected before              IndirectLight::queue
 //       → next walks
-//     … until the wave is through: DirectLight::flush, IndirectLight::flush
+//     at the end of the wave: DirectLight::flush, IndirectLight::flush
 //
 // A sensor (Integrator::irradiance) is a hit without a walk.
 #pragma once
@@ -23,9 +24,9 @@ namespace troffer {
 
 class WaveIntegrator final : public Integrator {
  public:
-  // indirect: may be null; else DirectLight leaves the specular part to walks. Without it a picture
-  // may be refined by what its viewing rays run into (has_surrogates): of light no more is known
-  // then.
+  // indirect: may be null; otherwise direct->walked_part() must be `specular`. has_surrogates
+  // applies without indirect light: the emission that viewing rays hit then serves refinement as
+  // known radiance.
   WaveIntegrator(const PreparedScene& scene, std::unique_ptr<DirectLight> direct,
                  std::unique_ptr<IndirectLight> indirect, bool has_surrogates = false);
 
@@ -46,7 +47,7 @@ class WaveIntegrator final : public Integrator {
   void begin(const SampleRequest& request, Scratch& s, RadianceBatch& out) const;
   void arrive(size_t first, size_t last, Scratch& s, RadianceBatch& out) const;
   void see_through_panes(const Walk& walk, const Vertex& v, Scratch& s) const;
-  // Whether it left a rough surface only to look for emission.
+  // True if the walk left a rough surface only to look for emission.
   bool ends_here(const Walk& walk) const {
     return walk.is_last || (!indirect_ && walk.scatterings > 0);
   }

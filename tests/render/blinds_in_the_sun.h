@@ -1,4 +1,4 @@
-// A room behind blinds.
+// A room behind blinds in the sun.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace troffer::test {
 
-// A high sun on slats of 25 mm, which cells are wider than: of what it shines on, their outer
-// parts, one sees the less the higher one stands.
+// The sun is high, and the slats of 25 mm are narrower than a cell. Their outer parts are sunlit; a
+// higher viewpoint sees less of these.
 inline Scene blinds_in_the_sun() {
   Scene s = WindowRoom::make(0.5f);
   const uint32_t white = add_diffuse(s, Rgb{0.8f});
@@ -24,7 +24,7 @@ inline Scene blinds_in_the_sun() {
   return s;
 }
 
-// Turned to the blinds, and seeing them from above; the sun is behind them.
+// Points that face the blinds and see them from above; the sun is behind the blinds.
 inline std::vector<MeasuringPoint> points_above(int n) {
   std::vector<MeasuringPoint> points;
   Random random(7);

@@ -1,4 +1,4 @@
-// A closed room in which radiance is the same everywhere, whatever stands in it.
+// A furnace: a closed room in which radiance is the same everywhere, whatever stands in it.
 #pragma once
 
 #include "render/camera.h"
@@ -10,7 +10,7 @@ namespace troffer::test {
 
 inline constexpr float L0 = 3;
 
-// Surfaces of many reflectances, each shining with (1 - rho) L0: radiance is L0 everywhere.
+// Surfaces of many reflectances rho, each emitting (1 - rho) L0, so that radiance is L0 everywhere.
 inline Scene uneven_furnace() {
   Scene s;
   const auto grey = [&](float rho) { return add_diffuse(s, Rgb{rho}); };
@@ -21,7 +21,7 @@ inline Scene uneven_furnace() {
     s.meshes[walls[i]].material = grey(reflectances[i]);
     make_light(s, walls[i], glow(reflectances[i]));
   }
-  // Things that stand in one another's light: a block that reflects all, a ball, a disk, a screen.
+  // Objects that shade one another: a block that reflects everything, a ball, a disk, a screen.
   const auto block = add_box_inside(s, grey(1), {0.3f, 0.2f, 0.1f}, {1, 1, 1.2f});
   for (const uint32_t q : block)
     for (Triangle& t : s.meshes[q].triangles) std::swap(t[1], t[2]);
@@ -41,7 +41,7 @@ inline Camera furnace_camera() {
   return look_at({-1.5f, -1.8f, 1.3f}, {0.2f, 0.6f, 0.8f}, {0, 0, 1}, 75);
 }
 
-// Small pictures by paths, whose means over some seeds show little errors of energy.
+// Small path-traced pictures. Means over several seeds show small energy errors.
 inline RenderOptions furnace_options() {
   RenderOptions o;
   o.method = Method::path;

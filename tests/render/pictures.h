@@ -1,4 +1,4 @@
-// Whole pictures, many times over with other random numbers, and what their pixels have in common.
+// Whole pictures, rendered with many seeds, and statistics of their pixels.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ inline RenderResult render_now(const PreparedScene& scene, const Camera& camera,
   return render(scene, camera, options, {}, never_stopped);
 }
 
-// Reflected light alone, in so many pixels.
+// Renders reflected light alone, in a picture of this size.
 inline Image reflected_light(const PreparedScene& scene, const Camera& camera, int width,
                              int height, RenderOptions options) {
   options.width = width;
@@ -33,7 +33,7 @@ inline Image reflected_light(const PreparedScene& scene, const Camera& camera, i
   return render_now(scene, camera, options).layers.at(1).image;
 }
 
-// The same bits in every layer.
+// True if all layers are bit-identical.
 inline bool is_identical(const std::vector<Layer>& a, const std::vector<Layer>& b) {
   if (a.size() != b.size()) return false;
   for (size_t l = 0; l < a.size(); ++l) {
@@ -45,8 +45,8 @@ inline bool is_identical(const std::vector<Layer>& a, const std::vector<Layer>& 
   return true;
 }
 
-// How many pixels of a crop, of all layers, are not those of the whole picture; all of them where
-// sizes do not match.
+// Counts the pixels of a crop, over all layers, that differ from those of the whole picture.
+// Returns all of them if sizes do not match.
 inline size_t pixels_off_crop(const RenderResult& whole, const RenderResult& part,
                               const std::array<int, 4>& crop) {
   size_t off = 0;
@@ -76,7 +76,8 @@ inline bool is_finite(const Image& image) {
   return true;
 }
 
-// Green channels of `sets` pictures of seeds options.seed, +1, …: per pixel, and of the means.
+// Green channels of `sets` pictures with seeds options.seed, options.seed + 1 and so on: moments
+// per pixel, and of the pictures' means.
 struct Ensemble {
   std::vector<Moments> pixels;
   Moments mean;
@@ -94,8 +95,8 @@ inline Ensemble render_ensemble(const PreparedScene& scene, const Camera& camera
   return e;
 }
 
-// How many of the pixels differ from `expected` more than chance allows, all pixels together being
-// allowed to fail once in a thousand runs.
+// Counts the pixels that differ from `expected` by more than chance allows. All pixels together may
+// fail once in a thousand runs.
 inline size_t pixels_off(const Ensemble& e, const std::function<double(size_t)>& expected,
                          double rounding) {
   const double significance = sidak(1e-3, int(e.pixels.size()));

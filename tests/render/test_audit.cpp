@@ -1,5 +1,5 @@
-// Measurements beside others that trust nothing: what is told of a bias, and what comes in place of
-// what is biased.
+// Audit of measurements: detection of a bias, its addition to errors, and replacement of biased
+// values.
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -26,8 +26,8 @@ struct Lists {
   std::vector<Measurement> points, others;
 };
 
-// Points of 50 to 550 lx, known within one and within three percent; the first are off by a bias
-// of random sign.
+// Points of 50 to 550 lx with standard errors of one and three percent in the two lists. The first
+// list has a bias of random sign.
 Lists lists(int points, double bias, Random& random) {
   Lists l;
   for (int i = 0; i < points; ++i) {
@@ -52,8 +52,8 @@ MeasureOptions by_cells(int threads) {
   return o;
 }
 
-// Paths that find light of 1, each within a tenth, and are off by so much at the first look at
-// so many sensors in all, and by so much after.
+// An integrator that finds light of 1, with an error of a tenth per sample. The first sensors have
+// the bias `at_first`, later ones the bias `then`.
 class TwoLooks final : public Integrator {
  public:
   TwoLooks(double at_first, double then, uint64_t first_sensors)
@@ -86,8 +86,7 @@ TEST_CASE("audit: what is found at the first look is looked at once more, which 
   constexpr uint64_t first = points * samples * 4, both = first + points * samples * 16;
   const std::vector<MeasuringPlace> places(points);
   std::vector<PointLight> by_cells(points);
-  for (PointLight& p : by_cells)
-    p.all = p.indirect = {Rgb{0}, 1, 0.002};
+  for (PointLight& p : by_cells) p.all = p.indirect = {Rgb{0}, 1, 0.002};
   const PointPlan plan{.samples = samples, .samples_per_estimate = 1};
   const auto found = [&](double at_first, double then, uint64_t sensors) {
     const TwoLooks paths(at_first, then, first);
@@ -96,7 +95,7 @@ TEST_CASE("audit: what is found at the first look is looked at once more, which 
     CHECK(paths.seen() == sensors);
     return *finding;
   };
-  CHECK(found(0, 0.1, first).bias == 0);  // nothing is doubted
+  CHECK(found(0, 0.1, first).bias == 0);  // no doubt
   const AuditFinding cleared = found(0.1, 0, both), confirmed = found(0.1, 0.1, both);
   CHECK(cleared.bias == 0);
   CHECK(confirmed.bias == doctest::Approx(0.1).epsilon(0.05));

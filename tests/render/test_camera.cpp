@@ -14,7 +14,7 @@ namespace {
 
 constexpr Vec2 middle_of_lens{0.5f, 0.5f};
 
-// Angle of the ray through a raster position to the camera's axis, degrees.
+// Returns the angle of the ray through a raster position to the camera's axis, degrees.
 double angle_deg(const Camera& camera, int width, int height, float x, float y) {
   const Ray r = ViewingCamera(camera, width, height).ray({x, y}, middle_of_lens);
   return deg_from_rad(std::acos(double(std::min(1.0f, dot(r.direction, camera.forward)))));
@@ -104,7 +104,7 @@ TEST_CASE("look_at is right-handed and upright") {
     CHECK(length(d.right) == doctest::Approx(1).epsilon(1e-5));
     CHECK(std::abs(dot(d.right, d.up)) < 1e-5f);
   }
-  // Straight down there is no upright: any frame will do.
+  // Looking along `up`, any frame is valid.
   const Camera down = look_at({0, 0, 5}, {0, 0, 0}, {0, 0, 1}, 40);
   check_close(down.forward, {0, 0, -1});
   CHECK(length(cross(down.right, down.up) + down.forward) < 1e-5f);

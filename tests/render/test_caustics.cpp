@@ -1,4 +1,4 @@
-// Light that glass and bent mirrors throw on matte surfaces: by cells as much as by paths.
+// Caustics: light from glass and curved mirrors on matte surfaces, by cells and by paths.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -25,8 +25,8 @@ Material mirror() {
   return m;
 }
 
-// A light of 25 cm over a dark floor in a dark room: next to all that the floor gets beside what
-// comes straight from the light is the caustic.
+// A light of 25 cm over a dark floor in a dark room. Apart from direct light, nearly all light of
+// the floor is the caustic.
 Scene dark_room() {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.1f}), {-2, -2, 0}, {2, 2, 2.5f});
@@ -61,7 +61,7 @@ TEST_CASE("caustics: as much light below a ball of glass as by paths") {
 TEST_CASE("caustics: as much light before a bent mirror as by paths") {
   Scene s = dark_room();
   const uint32_t material = add_material(s, mirror());
-  // A hollow half cylinder beside the light's foot.
+  // A hollow half cylinder next to the place below the light.
   constexpr int sides = 24;
   for (int i = 0; i < sides; ++i) {
     const auto at = [](int k) {

@@ -22,7 +22,7 @@ MeasureOptions by_cells(int spp) {
   return o;
 }
 
-// Points all over the inside of a box, as many on every square metre, facing inwards.
+// Points spread evenly over the inside of a box, facing inwards.
 std::vector<MeasuringPoint> points_inside(const Vec3d& a, const Vec3d& b, int along) {
   std::vector<MeasuringPoint> points;
   Random random(9);
@@ -129,7 +129,7 @@ TEST_CASE("cells: byte-identical for any number of threads, and crops are parts 
   CHECK(pixels_off_crop(one, render_now(scene, mixed_room_camera(), o), o.crop) == 0);
 }
 
-// Large enough that pixels between others have no records of their own.
+// Large enough that some pixels have no records of their own.
 TEST_CASE("cells: crops of a picture whose pixels lie close together are parts of it") {
   const PreparedScene scene(mixed_room());
   RenderOptions o = picture_by_cells();
@@ -148,7 +148,7 @@ TEST_CASE("cells: crops of a picture whose pixels lie close together are parts o
   }
 }
 
-// A room without light of its own beyond a pane; behind the viewer of the first a mirror.
+// A room without a light of its own behind a pane. The first room has a mirror behind the viewer.
 Scene room_behind_glass() {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f});
@@ -245,7 +245,7 @@ TEST_CASE("cells: a room with mirror, glass, gloss is as bright as by paths") {
   CHECK(mine.mean.mean() == doctest::Approx(paths.mean.mean()).epsilon(0.005));
 }
 
-// A room whose floor has white and dark tiles of half a decimetre.
+// A room whose floor has white and dark tiles of 5 cm.
 Scene tiled_room() {
   Scene s;
   const auto walls = add_box_inside(s, add_diffuse(s, Rgb{0.6f}), {-1, -1, 0}, {1, 1, 2});
@@ -274,7 +274,7 @@ TEST_CASE("cells: light on a floor of tiles is smooth, and the tiles stay sharp"
   o.width = 32;
   o.height = 24;
   o.aovs = {Aov::indirect, Aov::albedo};
-  // Light by what the same viewing rays have seen of the tiles: few of them show few tiles.
+  // Divide by the albedo that the same viewing rays have seen: few rays see few tiles.
   const auto irradiance = [&](const RenderResult& r) {
     Image image = r.layers[1].image;
     for (size_t i = 0; i < image.pixels.size(); ++i)
@@ -299,10 +299,10 @@ TEST_CASE("cells: light on a floor of tiles is smooth, and the tiles stay sharp"
   CAPTURE(std::sqrt(noise / n));
   CAPTURE(std::sqrt(squares / n));
   CHECK(mean_green(mine) == doctest::Approx(mean_green(paths)).epsilon(0.005));
-  CHECK(std::sqrt(squares / n) < 0.025);  // the noise of paths is in it
+  CHECK(std::sqrt(squares / n) < 0.025);  // includes the noise of paths
 }
 
-// Leaves in the open: each ray hits another one, and a cell of it is worth what that ray is.
+// Leaves in the open: rays of a cell hit different leaves, so cells are hardly shared.
 TEST_CASE("cells: where few rays share cells, few go out from each") {
   Scene s;
   const uint32_t m = add_diffuse(s, Rgb{0.5f});
@@ -328,7 +328,7 @@ TEST_CASE("cells: where few rays share cells, few go out from each") {
   CAPTURE(c.cells);
   CAPTURE(c.rays);
   CHECK(c.cells > 10'000);
-  CHECK(double(c.rays) < 16 * double(c.cells));  // 27 where all send out as many
+  CHECK(double(c.rays) < 16 * double(c.cells));  // 27 if all cells send out equally many
   o.method = Method::path;
   o.indirect = Indirect::automatic;
   o.spp = 256;

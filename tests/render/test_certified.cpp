@@ -25,7 +25,7 @@ RenderOptions certified_options() {
   return o;
 }
 
-// Where rays decide, what one cluster found helps the next.
+// Rays decide much of the visibility here, and occluders found by one cluster serve the next.
 Scene room_with_leaves() {
   Scene s = mixed_room();
   for (int i = 0; i < 40; ++i) {
@@ -98,7 +98,7 @@ TEST_CASE("certified --indirect none: the direct light of fixed; every pixel") {
   o.shadow_rays = 4;
   o.seed = 1000;
   const Image fixed = render_now(scene, mixed_room_camera(), o).layers[0].image;
-  // The expectation is noisy itself, hence the tolerance.
+  // The expectation has noise, hence the tolerance.
   const size_t off = pixels_off(
       mine, [&](size_t i) { return double(fixed.pixels[i].g); }, 0.03);
   CHECK(off == 0);
@@ -173,8 +173,8 @@ TEST_CASE("certified: kj92room as its reference shows it") {
   const double relative_rmse = std::sqrt(sum / double(3 * image.pixels.size())) / mean(expected);
   MESSAGE("relative RMSE ", relative_rmse);
   CHECK(mean(image) == doctest::Approx(mean(expected)).epsilon(1e-3));
-  CHECK(relative_rmse < 0.01);  // mostly the reference's noise and the edges of objects
-  // All of it is proved, or masked; of further rays hardly any is not.
+  CHECK(relative_rmse < 0.01);  // mostly noise of the reference and edges of objects
+  // Nearly everything is certified or masked, for further rays as well.
   const Counters& counters = result.statistics.counters;
   CHECK(100 * counters.shadow_rays < counters.viewing_rays);
   o.max_spp = o.spp;
@@ -230,7 +230,7 @@ TEST_CASE(
     const Measurement &a = mine.values[i], &b = path.values[i];
     if (a.standard_error > 0) ++penumbra;
     CHECK(a.standard_error <= 2e-3 * a.illuminance_lx + 1e-6);
-    // Single precision of what is exact, and 1e-5 for the bias of ratios.
+    // Single precision of exact terms, and 1e-5 for the bias of ratio estimators.
     const double s =
         std::hypot(a.standard_error, b.standard_error) + 1e-5 * b.illuminance_lx + 1e-9;
     const double z = (a.illuminance_lx - b.illuminance_lx) / s;
@@ -270,7 +270,7 @@ TEST_CASE("certified: the standard error of what is measured is the spread over 
   }
   for (size_t i = 0; i < points.size(); ++i) {
     CAPTURE(i);
-    // 32 values tell their own spread to about 13 %.
+    // The spread of 32 values has an error of about 13 %.
     CHECK(claimed[i] / (values[i].variance_of_mean() * seeds) ==
           doctest::Approx(1.08).epsilon(0.6));
   }
@@ -289,7 +289,7 @@ TEST_CASE("certified: the error that is told is the error that is made, and up t
     o.threads = 2;
     o.spp = o.max_spp = 4;
     o.aovs = {Aov::error};
-    // the same viewing rays, and sources sampled far better by other numbers
+    // The same viewing rays, with sources sampled far better by other random numbers.
     o.error = 0.001;
     const Image better = render_now(scene, scene.scene.cameras.at(0), o).layers[0].image;
     for (const double error : {0.05, 0.01}) {

@@ -1,4 +1,5 @@
-// Renderings that are broken off and gone on with: the same bits; files that lie.
+// Interrupted renderings that continue from a checkpoint: the same bits. Also damaged and forged
+// checkpoint files.
 #include "render/checkpoint.h"
 
 #include <doctest/doctest.h>
@@ -57,7 +58,7 @@ struct Room {
   }
 };
 
-// Until the tiles done are this share of all; has_file: goes on from it.
+// Renders until the share of tiles done reaches `share`; has_file: continues from the file.
 RenderResult broken_off(const Room& room, RenderOptions o, const File& file, bool has_file,
                         double share, double interval) {
   Checkpoint checkpoint(file.path, room.key(o), {o.part, o.parts}, interval, {});
@@ -83,10 +84,10 @@ void check_resumed(const RenderOptions& o) {
   const RenderResult whole = render_now(room.scene, room.camera, o);
   const File file;
   bool is_there = false;
-  // Of the work after cells, which take the first half.
+  // Shares of the work after cells, which take the first half.
   const double first = needs_cells(o.method, o.indirect) ? 0.5 : 0;
   for (const double share : {0.02, 0.45, 0.55, 0.7, 0.95}) {
-    // Kept in the end, or all the time and read as it was when a tile was done.
+    // Written at the end, or all the time and read as it was when a tile was done.
     const RenderResult part =
         broken_off(room, o, file, is_there, first + (1 - first) * share, share < 0.5 ? 1e9 : 0);
     CHECK(part.end == (part.is_complete ? RenderEnd::complete : RenderEnd::stopped));
@@ -96,7 +97,7 @@ void check_resumed(const RenderOptions& o) {
   CHECK(resumed.is_complete);
   CHECK(is_identical(resumed.layers, whole.layers));
   CHECK(is_same_work(resumed.statistics.counters, whole.statistics.counters));
-  // A picture that is done is there at once.
+  // A finished picture is complete at once.
   const RenderResult again = broken_off(room, o, file, true, 2, 1e9);
   CHECK(is_identical(again.layers, whole.layers));
 }
@@ -242,7 +243,7 @@ TEST_CASE("checkpoints that lie, with sound sums: refused, or a picture all the 
           chunk.resize(at + 1);
           break;
         case 2:
-          chunks.push_back(chunk);  // a tile twice
+          chunks.push_back(chunk);  // the same tile twice
           break;
         default:
           for (size_t k = at; k < std::min(at + 8, chunk.size()); ++k) chunk[k] = 0xff;

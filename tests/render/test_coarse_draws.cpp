@@ -1,4 +1,4 @@
-// Coarse pictures: first viewing rays draw points of lights where certificates take more.
+// Coarse pictures: viewing rays sample points of lights where certificates cost more.
 #include <doctest/doctest.h>
 
 #include "base/random.h"
@@ -41,7 +41,7 @@ TEST_CASE("coarse pictures draw points of many lamps behind a thicket") {
   o.width = 48;
   o.height = 36;
   o.threads = 2;
-  o.spp = o.max_spp = 1;  // no further viewing rays, which draw in any case
+  o.spp = o.max_spp = 1;  // no further viewing rays, which sample points in any case
   o.indirect = Indirect::cells;
   o.error = 0.2;
   const RenderResult coarse = render_now(scene, camera, o);
@@ -50,7 +50,8 @@ TEST_CASE("coarse pictures draw points of many lamps behind a thicket") {
   const auto rays = [](const RenderResult& r) {
     return double(r.statistics.counters.shadow_rays) / (48 * 36);
   };
-  CHECK(rays(coarse) < 60);  // 44: the draws, and what a few hits of each cluster took
+  // 44: the samples, and the proofs attempted for a few hits of each cluster
+  CHECK(rays(coarse) < 60);
   CHECK(rays(finer) > 100);  // 138
   CHECK(mean(coarse.layers[0].image) == doctest::Approx(mean(finer.layers[0].image)).epsilon(0.02));
 }

@@ -1,5 +1,5 @@
-// Light that goes from coated wall to coated wall: what a coat lets through depends on where light
-// comes from as much as on where it goes.
+// Interreflection between coated walls. The light that a coat transmits depends on the direction of
+// incidence as much as on that of reflection.
 #include <doctest/doctest.h>
 
 #include "render/pictures.h"
@@ -10,7 +10,7 @@ using namespace troffer::test;
 
 namespace {
 
-// Light of a small source comes to the floor at right angles, where a coat lets through most.
+// Light of a small source reaches the floor at right angles, where a coat transmits most.
 Scene coated_room(float alpha) {
   Scene s;
   Material m;

@@ -1,5 +1,5 @@
-// Two one-sided sheets in one place that face opposite ways, as in the Khronos TextureSettingsTest:
-// a viewer sees the one that faces him (glTF 2.0 §3.9.7), whichever comes first in the file.
+// Two coincident one-sided sheets that face opposite ways, as in the Khronos TextureSettingsTest. A
+// viewer sees the one that faces him (glTF 2.0 §3.9.7), whichever comes first in the file.
 #include <doctest/doctest.h>
 
 #include "render/pictures.h"
@@ -9,7 +9,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A red sheet that faces up and a green one that faces down, under uniform surroundings.
+// A red sheet that faces up and a green one that faces down, in uniform surroundings.
 Scene two_sheets(bool is_red_first, float shift) {
   Scene s;
   for (const bool is_red : {is_red_first, !is_red_first}) {
@@ -65,7 +65,7 @@ TEST_CASE("of two one-sided sheets in one place the one that faces the viewer is
             red += double(p.r) / 144;
             green += double(p.g) / 144;
           }
-          // A matte sheet of .5 under surroundings of radiance 1 on its side.
+          // A matte sheet of reflectance .5 under surroundings of radiance 1 on its side.
           CHECK((is_from_above ? red : green) == doctest::Approx(0.5).epsilon(0.02));
           CHECK((is_from_above ? green : red) == 0);
         }

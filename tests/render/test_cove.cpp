@@ -1,5 +1,4 @@
-// Light that comes from behind a lip: what a ray sees of the surfaces there depends on where it
-// comes from.
+// Light from behind a lip: the radiance that a ray sees there depends on where it comes from.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -31,7 +30,7 @@ Scene cove_room() {
 
 constexpr int width = 64, height = 48, block = 16;
 
-// Root mean square, over blocks of pixels, of how far one is from the other's.
+// Returns the root mean square difference over blocks of pixels.
 double off_in_blocks(const Image& image, const Image& truth) {
   double squares = 0;
   int blocks = 0;
@@ -66,13 +65,13 @@ TEST_CASE("a cove lights all parts of a room as much as by paths") {
     CHECK(off < 0.13);
     squares += sqr(off) / 3;
   }
-  CHECK(std::sqrt(squares) < 0.09);  // .14 to .17 by cells that are not halved; other paths: .03
+  // .14 to .17 with cells of full size; .03 for independent paths
+  CHECK(std::sqrt(squares) < 0.09);
 }
 
 namespace {
 
-// A hall whose ceiling gets its light from strips that shine upwards, 5 cm above the shelves behind
-// two lips.
+// A hall whose ceiling is lit by strips that shine upwards, 5 cm above the shelves behind two lips.
 Scene hall_with_coves() {
   Scene s;
   const uint32_t white = add_diffuse(s, Rgb{0.8f}), black = add_diffuse(s, Rgb{0});
@@ -99,8 +98,8 @@ Scene hall_with_coves() {
 
 }  // namespace
 
-// It is narrower than a pixel there, and its light comes from the shelf below, which the lamp hides
-// a part of.
+// The rim is narrower than a pixel, and its light comes from the shelf below, a part of which the
+// lamp hides.
 TEST_CASE("the bright rim over a cove's lip gets its light but for three percent") {
   const PreparedScene scene(hall_with_coves());
   const Camera camera = look_at({1, 1, 1.6f}, {7, 4, 1.8f}, {0, 0, 1}, 75);
@@ -129,7 +128,7 @@ TEST_CASE("the bright rim over a cove's lip gets its light but for three percent
     }
     CAPTURE(pixels);
     REQUIRE(pixels > 30);
-    // By fits to one side, and cells as wide as the shelf: .93.
+    // .93 with fits on one side only and cells as wide as the shelf.
     CHECK(of_made / of_truth == doctest::Approx(1).epsilon(0.03));
   }
 }

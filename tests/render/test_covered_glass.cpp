@@ -1,4 +1,4 @@
-// Glass under clear coats and films, and lights that are otherwise not there.
+// Glass under clear coats and films, and lights on invisible surfaces.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -31,7 +31,8 @@ Material coated(Material m, float roughness) {
   return m;
 }
 
-// Light of radiance L from a square of side 1, so many metres above the origin.
+// Returns the irradiance at the origin by a square light of side 1 and this radiance, `above`
+// metres over it.
 double irradiance_of(double radiance, double above, const std::function<double(double)>& through) {
   return radiance * integrate_2d(
                         [&](double x, double y) {
@@ -84,7 +85,7 @@ TEST_CASE("glass under coats and films is not seen in a furnace") {
   const PreparedScene scene(std::move(s));
   RenderOptions o = furnace_options();
   const Ensemble e = render_ensemble(scene, furnace_camera(), o, 32);
-  // Rough coats and films keep the energy of each channel within some percent (docs/materials.md).
+  // Rough coats and films conserve energy within some percent per channel (docs/materials.md).
   CHECK(pixels_off(
             e, [](size_t) { return double(L0); }, 3e-2) == 0);
   CHECK(e.mean.mean() == doctest::Approx(double(L0)).epsilon(3e-3));
@@ -103,7 +104,7 @@ TEST_CASE("a lamp above a pane under coats, by every method") {
     make_light(s, add_square(s, black, 0.5f, 2), Rgb{7});
     const BsdfTables tables(s);
     const Bsdf bsdf = make_bsdf(tables, s, pane, {}, true);
-    // Of bare glass 4 % less than this times as much more.
+    // 4 % less than bare glass.
     CHECK(double(straight_transmittance(bsdf, 1).g) == doctest::Approx(0.857).epsilon(0.02));
     CAPTURE(roughness);
     check_irradiance(s, irradiance_of(7, 2, [&](double c) {
@@ -125,7 +126,7 @@ TEST_CASE("a light that hides nothing adds to what shines through it") {
   make_light(s, add_square(s, add_material(s, nothing), 0.5f, 1), Rgb{3});
   const auto all = [](double) { return 1.0; };
   check_irradiance(s, irradiance_of(7, 2, all) + irradiance_of(3, 1, all));
-  // So it does where it is seen.
+  // The same where it is seen directly.
   const PreparedScene scene(std::move(s));
   for (const Method method : {Method::certified, Method::path, Method::fixed}) {
     RenderOptions o;

@@ -1,4 +1,4 @@
-// Leaves in the open: much light arrives, and there is little to prove.
+// Leaves in the open: much light arrives, and little can be certified.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -74,7 +74,7 @@ TEST_CASE(
   CHECK(small.masked + small.lit_certified > small.mixed);
 }
 
-// Proofs took five times as long as rays to the same error.
+// Certificates cost far more than rays of the same error here.
 TEST_CASE("a wall in the open errs by what is asked, and rays are as even as fixed ones") {
   const PreparedScene scene = leaves(With::sky, true);
   const RenderResult mine = picture(scene, Method::certified),

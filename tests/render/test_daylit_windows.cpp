@@ -1,4 +1,4 @@
-// Light from infinity through openings: the default by proofs, against closed forms and rays.
+// Light from infinity through openings: certified light against closed forms and rays.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -62,7 +62,7 @@ TEST_CASE("a closed room is dark under any sky, sun and image") {
     CHECK(m.irradiance.g == 0);
 }
 
-// Before it was known what is closed off, the room took 14 to 25 times as long with the sky.
+// No part of the sky is visible from inside, so it must not cost anything.
 TEST_CASE("a sky and a sun cost a closed room neither rays nor masks") {
   const auto counters_of = [](bool has_sky) {
     Scene s = WindowRoom::make(0, false);
@@ -95,8 +95,8 @@ TEST_CASE("a sky and a sun cost a closed room neither rays nor masks") {
 
 namespace {
 
-// Walls are boxes that lie against each other: no surface is closed about the room, and a slit of
-// `slit` metres may be left over a wall.
+// A room whose walls are boxes side by side, so no single surface encloses it. A slit of `slit`
+// metres may remain above a wall.
 Scene thick_room(float slit, bool has_sky) {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
@@ -115,7 +115,7 @@ Scene thick_room(float slit, bool has_sky) {
 
 }  // namespace
 
-// Proofs, part by part of the sky, took ten times as long as all other light.
+// Certificates for single sky patches would cost far more than all other light.
 TEST_CASE("a room of thick walls that seems closed gets few rays, and no light is lost in slits") {
   const Camera camera = look_at({.3f, .4f, 1.6f}, {4, 3, .5f}, {0, 0, 1}, 70);
   RenderOptions o;
@@ -150,8 +150,8 @@ TEST_CASE("the sun's patch on the floor has the sun's light, and its edge the su
   sun.direction = normalize(Vec3{-1, 0, -1});
   sun.angular_radius = float(radius);
   const PreparedScene scene(std::move(s));
-  // The window's sill throws its edge to x = 5 - 0.9, whatever y; the sun's penumbra is about
-  // 2 radius × 0.9 √2 / sin 45° wide.
+  // The window's sill puts the edge of the patch at x = 5 - 0.9, whatever y. The sun's penumbra is
+  // about 2 radius × 0.9 √2 / sin 45° wide.
   const double width = 2 * radius * 0.9 * std::sqrt(2.0) * std::sqrt(2.0);
   std::vector<MeasuringPoint> points;
   for (const double x : {4.1 - 2 * width, 4.1, 4.1 + 2 * width})
@@ -163,7 +163,7 @@ TEST_CASE("the sun's patch on the floor has the sun's light, and its edge the su
   CHECK(values[2].irradiance.g == 0);
 }
 
-// So many things before the window that no list holds them: rays to what is left of the sky.
+// More occluders before the window than a facet list can hold: rays sample what is left of the sky.
 TEST_CASE("a thicket before a window: the mean of rays, and the same bytes for all threads") {
   Scene s = WindowRoom::make(0);
   const uint32_t m = add_diffuse(s, Rgb{0});
@@ -194,7 +194,7 @@ TEST_CASE("a thicket before a window: the mean of rays, and the same bytes for a
 
 namespace {
 
-// A thousand leaves over a plain that reflects like a matte or a coated surface.
+// A thousand leaves over a plain with a matte or a coated surface.
 Scene tree(bool is_glossy) {
   Scene s;
   const uint32_t m = add_diffuse(s, Rgb{0.6f});
@@ -216,7 +216,7 @@ Scene tree(bool is_glossy) {
 
 }  // namespace
 
-// What proofs are no help with: they must not cost more than the rays that they would save.
+// Certificates do not help here and must not cost more than the rays that they would save.
 TEST_CASE("a tree in the open: the mean of fixed rays, by few rays and hardly any proofs") {
   for (const bool is_glossy : {false, true}) {
     Scene s = tree(is_glossy);

@@ -1,4 +1,4 @@
-// The error that a film tells of pixels beside the one that they make, by blocks of samples.
+// Estimated against actual error of a film's pixels, by blocks of samples.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -10,8 +10,9 @@ using namespace troffer;
 
 namespace {
 
-// The error told of a pixel of n samples over that which is made, in the root of mean squares over
-// many pixels. value: what a sample there in the pixel sees; takes a hash of the pixel as well.
+// Returns the ratio of estimated to actual error of a pixel with n samples, as root mean squares
+// over many pixels. `value` gives a sample at a position in the pixel; it also takes a hash of the
+// pixel.
 template <class Value>
 double told_over_made(uint32_t n, bool is_expected, const Value& value) {
   constexpr int pixels = 600;
@@ -48,7 +49,7 @@ double told_over_made(uint32_t n, bool is_expected, const Value& value) {
 }  // namespace
 
 TEST_CASE("the error told of a pixel with an edge: larger blocks of samples tell less too much") {
-  // Through the pixel's centre, any way.
+  // Through the pixel's centre, in any direction.
   const auto edge = [](uint64_t pixel, uint32_t, const Vec2& p) {
     const float angle = 2 * pi_f * unit_float(uint32_t(pixel >> 32));
     return (p.x - 0.5f) * std::cos(angle) + (p.y - 0.5f) * std::sin(angle) > 0 ? 1.0 : 0.0;

@@ -1,4 +1,4 @@
-// The layer `error` of whole pictures beside what pictures of other random numbers differ by.
+// Layer `error` of whole pictures against the spread over pictures of other seeds.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ Material metal(float roughness) {
   return m;
 }
 
-// Small squares of metal, turned every way, below the light.
+// Adds small squares of metal in random directions below the light.
 void add_crystals(Scene& s, const Vec3& lower, const Vec3& upper, float side, uint32_t count) {
   const uint32_t material = add_material(s, metal(0.3f));
   const auto number = [](uint32_t i, uint32_t k) {
@@ -38,8 +38,8 @@ void add_crystals(Scene& s, const Vec3& lower, const Vec3& upper, float side, ui
   }
 }
 
-// Root mean squares over pixels of pictures of so many seeds, over their mean: what is told, and
-// how far they lie from their mean.
+// Root mean squares over the pixels of pictures with several seeds, relative to their mean. `told`
+// is the estimated error, `made` the deviation from the mean picture.
 struct Errors {
   double told = 0, made = 0;
 };
@@ -82,7 +82,7 @@ RenderOptions of_five_percent(int columns, int rows) {
   return o;
 }
 
-// Lamps of a few centimetres, bright and far away, above the eye.
+// Bright lamps of a few centimetres, far away and above the eye.
 Scene room_with_small_lamps() {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {-2, -2.5f, 0}, {2, 2.5f, 2.8f});
@@ -98,7 +98,7 @@ Scene room_with_small_lamps() {
   return s;
 }
 
-// A bright panel on a wall, and a floor of narrow gloss that shows it.
+// A bright panel on a wall, and a floor whose narrow gloss reflects it.
 Scene room_with_shining_floor() {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {-2, -2, 0}, {2, 2, 2.5f});
@@ -131,7 +131,7 @@ Scene rooms_with_gap() {
 TEST_CASE("told error: of lamps that are smaller than a pixel") {
   const PreparedScene scene(room_with_small_lamps());
   Camera camera = look_at({-1.5f, -2, 1.5f}, {1.2f, 1.7f, 0.9f}, {0, 0, 1}, 75);
-  // Hardly out of focus: what lamps cover of pixels is not taken for known (LightOutlines).
+  // Slightly out of focus, so that the coverage of lamps is unknown (LightOutlines).
   camera.lens_radius = 1e-6f;
   camera.focal_distance = 3;
   RenderOptions o = of_five_percent(64, 48);
@@ -139,7 +139,7 @@ TEST_CASE("told error: of lamps that are smaller than a pixel") {
   const Errors e = errors_of(scene, camera, o, 14);
   CAPTURE(e.told);
   CAPTURE(e.made);
-  CHECK(e.told > 0.75 * e.made);  // .53 without what glances leave
+  CHECK(e.told > 0.75 * e.made);  // .53 without the variance of surrogate samples
   CHECK(e.told < 1.8 * e.made);
   camera.lens_radius = 0;
   const Errors known = errors_of(scene, camera, o, 4);
@@ -159,7 +159,7 @@ TEST_CASE("told error: of what glitters within a pixel") {
   CAPTURE(e.made);
   CHECK(e.told > 0.9 * e.made);
   CHECK(e.told < 2 * e.made);
-  // It is in some of a tile's pixels, which get more rays than all could.
+  // Only some of a tile's pixels glitter; they get more rays than all could.
   o.max_spp = 64;
   const Errors of_even = errors_of(scene, camera, o, 2);
   CAPTURE(of_even.made);
@@ -173,7 +173,7 @@ TEST_CASE("told error: of a lamp that all rays of a pixel see in gloss") {
   CAPTURE(e.told);
   CAPTURE(e.made);
   CHECK(e.told > 0.8 * e.made);
-  CHECK(e.told < 3.5 * e.made);  // 3.9 where each meeting is told as a rare one
+  CHECK(e.told < 3.5 * e.made);  // 3.9 if each hit counts as a rare event
 }
 
 TEST_CASE("told error: of a lit room that is seen through a gap") {
@@ -183,5 +183,5 @@ TEST_CASE("told error: of a lit room that is seen through a gap") {
   CAPTURE(e.told);
   CAPTURE(e.made);
   CHECK(e.told > 0.8 * e.made);
-  CHECK(e.told < 3 * e.made);  // 5.8 where cells of one ray all err upwards
+  CHECK(e.told < 3 * e.made);  // 5.8 if cells of one ray all err upwards
 }

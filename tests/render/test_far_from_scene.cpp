@@ -1,5 +1,5 @@
-// Light from infinity at measuring points far outside the scene: it arrives there as it does in the
-// scene, since it comes from no finite distance.
+// Light from infinity at measuring points far outside the scene: it is the same there as in the
+// scene.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ Scene plate_in_sun() {
   Light sun;
   sun.name = "sun";
   sun.kind = LightKind::sun;
-  sun.direction = normalize(Vec3{0.3f, 0.4f, -0.5f});  // that its light takes
+  sun.direction = normalize(Vec3{0.3f, 0.4f, -0.5f});  // direction of propagation
   sun.angular_radius = 0.00465f;
   sun.radiance = Rgb{1000};
   s.lights.push_back(sun);
@@ -46,7 +46,8 @@ Scene plate_in_surroundings() {
   return s;
 }
 
-// From .1 m off to 1000 km: up to ten million sizes of the scene. The light comes past the plate.
+// Points from .1 m to 1000 km away, up to ten million sizes of the scene. The plate is not in the
+// way of the light.
 std::vector<MeasuringPoint> points_far_off() {
   std::vector<MeasuringPoint> points;
   for (const double distance : {0.2, 1.0, 5.0, 12.0, 30.0, 100.0, 1e3, 1e4, 1e6})
@@ -85,6 +86,6 @@ TEST_CASE("the sun shines alike near the scene and ten million times its size aw
 }
 
 TEST_CASE("uniform surroundings shine alike near the scene and far away") {
-  // The plate hides less than the allowed error at .2 m: its projected solid angle lies below.
+  // The plate hides less than the allowed error at .2 m.
   check_everywhere(plate_in_surroundings(), 2 * pi);
 }

@@ -1,4 +1,4 @@
-// Sums of samples per pixel: means, errors, first hits, samples that are not numbers.
+// Sums of samples per pixel: means, errors, first hits, samples that are not finite.
 #include "render/film.h"
 
 #include <doctest/doctest.h>
@@ -96,8 +96,8 @@ TEST_CASE("first-hit layers are means over the samples that hit, normals of unit
 
 namespace {
 
-// What is told of one pixel whose samples the method tells to be without error, but for what they
-// differ by.
+// Returns the estimated error of a pixel whose samples have an error estimate of zero by the
+// method, so that only their spread counts.
 double estimated_error_of(const std::vector<float>& values, bool expects_surrogates) {
   Film film({0, 0, 1, 1}, {Aov::error});
   if (expects_surrogates) film.expect_surrogates();
@@ -122,7 +122,7 @@ double independent_error_of(const std::vector<float>& values) {
 }  // namespace
 
 TEST_CASE("of whole pictures, what samples differ by within a pixel is told") {
-  // An edge: as many samples of each four on either side.
+  // An edge: of every four samples two lie on either side.
   std::vector<float> edge, spikes;
   for (int i = 0; i < 64; ++i) {
     edge.push_back(i % 2 == 0 ? 1.0f : 2.0f);
@@ -131,7 +131,7 @@ TEST_CASE("of whole pictures, what samples differ by within a pixel is told") {
   CHECK(estimated_error_of(edge, true) < 0.01);
   CHECK(estimated_error_of(spikes, true) ==
         doctest::Approx(independent_error_of(spikes)).epsilon(0.2));
-  // Of few samples one cannot know: what edges would leave of it.
+  // With few samples the spread is reduced by the factor for edges.
   const std::vector<float> few{1, 1, 2, 2};
   for (const bool expects_surrogates : {false, true})
     CHECK(estimated_error_of(few, expects_surrogates) ==

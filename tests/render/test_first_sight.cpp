@@ -64,10 +64,10 @@ TEST_CASE("a first sight shows where rays meet something, and how it leans, for 
       if (std::abs(value - (0.05f + 0.35f * std::abs(dot(n, ray.direction)))) > 0.01f) ++off;
     }
   CHECK(hits > 3000);
-  CHECK(wrong < 150);  // pixels that crumbs cover in part
+  CHECK(wrong < 150);  // pixels partly covered by crumbs
   CHECK(off < 150);
   CHECK(image.pixels == first_sight(scene, viewing, window, 1).pixels);
-  // A crop shows its part.
+  // A crop equals its part of the picture.
   const Image part = first_sight(scene, viewing, {20, 10, 52, 40}, 2);
   int differ = 0;
   for (int y = 0; y < part.height; ++y)

@@ -1,4 +1,4 @@
-// Rooms and objects: from where they are shown.
+// Default cameras for rooms and for objects.
 #include "render/framing.h"
 
 #include <doctest/doctest.h>
@@ -11,7 +11,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A box of the given size, its fronts within (a room) or without (a body).
+// A box of this size whose fronts face inwards (a room) or outwards (a body).
 void add_box(Scene& s, const Vec3& low, const Vec3& high, bool is_room) {
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
   for (size_t axis = 0; axis < 3; ++axis)
@@ -49,7 +49,7 @@ TEST_CASE("a room is shown from within, an object from before it") {
   for (const Vec3 up : {Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
     const Camera c = framing_camera(outside, up);
     CHECK(dot(c.up, up) > 0.8f);
-    // All corners are in the picture, and it does not stand far off.
+    // All corners are in the picture, and the camera is not far off.
     const ViewingCamera viewing(c, 400, 300);
     float lowest = 300, highest = 0;
     for (int i = 0; i < 8; ++i) {
@@ -67,7 +67,7 @@ TEST_CASE("a room is shown from within, an object from before it") {
     CHECK(highest - lowest > 120);
   }
 
-  // A table on a plate is none; nothing at all neither.
+  // A table on a plate is not a room; an empty scene is not one either.
   Scene table;
   add_box(table, {-2, -0.1f, -2}, {2, 0, 2}, false);
   add_box(table, {-1, 0.7f, -1}, {1, 0.75f, 1}, false);

@@ -1,4 +1,4 @@
-// Pictures whose every pixel is known.
+// Pictures in which the value of every pixel is known.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ TEST_CASE("in a furnace every pixel is as bright as every other") {
   CAPTURE(e.mean.mean());
   CAPTURE(e.mean.standard_error());
   CHECK(p_of_mean(e.mean, double(L0), 1e-5 * double(L0)) > 1e-4);
-  CHECK(e.mean.standard_error() < 2e-3 * double(L0));  // or the test would say little
+  CHECK(e.mean.standard_error() < 2e-3 * double(L0));  // precise enough for the test
 }
 
 TEST_CASE("a furnace with glass, mirrors and gloss in it") {
@@ -46,7 +46,7 @@ TEST_CASE("a furnace with glass, mirrors and gloss in it") {
   const PreparedScene scene(std::move(s));
   const RenderOptions o = furnace_options();
   const Ensemble e = render_ensemble(scene, furnace_camera(), o, 32);
-  // Rough metal keeps its energy within 0.15 % (bsdf/bsdf.h).
+  // Rough metal conserves energy within 0.15 % (bsdf/bsdf.h).
   CHECK(pixels_off(
             e, [](size_t) { return double(L0); }, 2e-3) == 0);
   CHECK(p_of_mean(e.mean, double(L0), 5e-4 * double(L0)) > 1e-4);
@@ -61,14 +61,14 @@ TEST_CASE("fixed and path show the same exactly known floor, pixel by pixel") {
   add_sphere_light(s, 0, {2, 1, 1.2f}, 0.3f, Rgb{20});
   add_disk_light(s, 0, {-2, 1, 1.5f}, normalize(Vec3{1, 0, -1}), 0.4f, Rgb{15});
   const PreparedScene scene(std::move(s));
-  // Straight down from below the sources, so that no pixel shows them or their shadows.
+  // The camera looks straight down from below the sources, so no pixel shows them or their shadows.
   Camera camera = look_at({0, 0, 0.7f}, {0, 0, 0}, {0, 1, 0}, 100);
   RenderOptions o;
   o.method = Method::path;
   o.width = o.height = 16;
   o.indirect = Indirect::none;
   o.aovs = {Aov::position};
-  // A pixel's mean over its area, by 3 × 3 Gauss points of its own square on the floor.
+  // A pixel's mean over its square on the floor, by 3 × 3 Gauss points.
   const ViewingCamera view(camera, o.width, o.height);
   const auto expected = [&](size_t i) {
     const double nodes[] = {0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)};

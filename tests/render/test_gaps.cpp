@@ -1,4 +1,4 @@
-// Reflected light at surfaces that something stands close before: panels below a ceiling.
+// Indirect light of surfaces with an object close in front: panels below a ceiling.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A hundred shining panels, black themselves, in rows this far below the ceiling.
+// A hundred emitting panels with black surfaces, in rows at this distance below the ceiling.
 Scene room_under_panels(float gap) {
   constexpr int side = 10;
   constexpr float half = 0.3f, height = 3;
@@ -49,7 +49,7 @@ TEST_CASE("a ceiling close above black panels shows what it gets between them") 
     RenderOptions ours;
     ours.error = 0.02;
     const Image right = reflected(scene, path), made = reflected(scene, ours);
-    double squares = 0;  // the noise of both; .055 are `path`s
+    double squares = 0;  // noise of both; .055 is that of `path`
     for (size_t i = 0; i < right.pixels.size(); ++i)
       squares += std::pow(double(made.pixels[i].g) - double(right.pixels[i].g), 2);
     const double typical = mean(right);

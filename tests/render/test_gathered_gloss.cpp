@@ -1,5 +1,5 @@
-// Wide gloss is gathered for and fitted with the light of matte surfaces; what gloss adds to a
-// pixel's error is told.
+// Wide gloss is gathered and fitted together with matte light, and the error estimate includes
+// gloss.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ Material metal(float reflectance, float roughness) {
   return m;
 }
 
-// A bright patch on the floor of a room lights all the rest.
+// A bright patch on the floor of a room illuminates everything else.
 Scene room_with_patch(const Material& walls) {
   Scene s;
   add_box_inside(s, add_material(s, walls), {-2, -2, 0}, {2, 2, 2.5f});
@@ -50,7 +50,7 @@ RenderOptions picture(int width, double error) {
   return o;
 }
 
-// Pixels far brighter than the middle one of those around.
+// Counts the pixels far brighter than the median of their neighbours.
 size_t specks(const Image& image) {
   size_t count = 0;
   for (int y = 2; y < image.height - 2; ++y)
@@ -104,7 +104,7 @@ TEST_CASE("gathered gloss: as bright as by paths, whatever its width") {
   }
 }
 
-// There rays of the gloss look for lamps, in competition with points of these.
+// Rays of the lobe look for lamps there, in competition with points sampled on lamps.
 TEST_CASE("gathered gloss: as bright as by paths where it is seen from the side under lamps") {
   for (const int lamps : {6, 2}) {
     Scene s;

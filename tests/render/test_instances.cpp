@@ -1,4 +1,4 @@
-// Pictures of instances beside pictures of copies.
+// Pictures of instances compared with pictures of copies.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -55,7 +55,7 @@ Difference difference(const RenderOptions& options, const Scene& scene) {
                     render_now(b, camera_in_room(), options).layers[0].image);
 }
 
-// A picture that is black or not the same at all would pass for little.
+// Checks that the picture is not black and that it shows the instances.
 void check_is_a_picture(const Scene& scene) {
   Scene without = scene;
   without.instances.clear();
@@ -141,7 +141,7 @@ TEST_CASE("instances before a mirror, behind it and across it") {
   const auto image = image_in(scene, mirror), expected = image_in(copied_out(scene), mirror);
   REQUIRE(image);
   REQUIRE(expected);
-  CHECK(image->scene.instances.size() == 2);  // the one before it, and its image
+  CHECK(image->scene.instances.size() == 2);  // the one in front of the mirror, and its image
   CHECK(triangle_count(image->scene) == triangle_count(expected->scene));
   const Tracer a(image->scene), b(expected->scene);
   Random r(2);

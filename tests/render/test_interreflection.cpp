@@ -1,4 +1,4 @@
-// What `measure` says of rooms and plates that reflect, against solutions by another method.
+// Measurements in rooms and between plates with reflection, against an independent solution.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,17 +12,17 @@ using namespace troffer::test;
 
 namespace {
 
-// Two plates that face each other, one of which shines too.
+// Two plates that face each other, one of which emits.
 std::vector<Rectangle> facing_plates() {
   return {{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, 0.8, 0}, {{0, 0, 1}, {0, 2, 0}, {2, 0, 0}, 0.6, 1}};
 }
 
-// Two plates with an edge in common, at right angles.
+// Two perpendicular plates with a common edge.
 std::vector<Rectangle> perpendicular_plates() {
   return {{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, 0.8, 0}, {{0, 0, 0}, {0, 2, 0}, {0, 0, 1.5}, 0.6, 1}};
 }
 
-// 4 × 4 × 3 m, a light of 1 × 1 m in the ceiling.
+// 4 × 4 × 3 m, with a light of 1 × 1 m in the ceiling.
 std::vector<Rectangle> room() {
   std::vector<Rectangle> r{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 0.3, 0},
                            {{0, 0, 0}, {0, 0, 3}, {4, 0, 0}, 0.5, 0},

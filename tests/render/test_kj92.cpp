@@ -1,4 +1,4 @@
-// Whole pictures by the method of 1992: threads, refinement, stops, scenes that hardly are any.
+// Whole pictures by the kj92 method: threads, refinement, stops, degenerate scenes.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ RenderOptions coarse() {
   return o;
 }
 
-// A lit room with a table, and a lamp that shines up.
+// A lit room with a table, and a lamp that shines upwards.
 Scene room_with_table() {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f, 0.5f, 0.4f});
@@ -60,7 +60,7 @@ TEST_CASE("kj92: byte-identical for any number of threads, with and without cohe
   for (const bool has_coherence : {true, false})
     for (const int max_spp : {0, 16}) {
       RenderOptions o = coarse();
-      // Once with what comes before the picture, by as many threads.
+      // Prepared in advance once, otherwise by render() with as many threads.
       if (has_coherence || max_spp > 0) o.preparation = preparation.get();
       o.kj92.sampling.has_coherence = has_coherence;
       o.max_spp = max_spp;
@@ -97,7 +97,7 @@ TEST_CASE("kj92: identical too with hundreds of sources, more than a thread keep
   const PreparedScene scene(std::move(s));
   RenderOptions o = coarse();
   o.spp = 1;
-  o.kj92.selection.is_enabled = false;  // all of them, everywhere
+  o.kj92.selection.is_enabled = false;  // all sources everywhere
   const Kj92Settings settings = o.kj92;
   const auto preparation = prepare(scene, Method::kj92, settings, Indirect::automatic, std::nullopt,
                                    2, {}, never_stopped);
@@ -151,12 +151,13 @@ TEST_CASE("kj92: refinement adds rays at edges and shadow boundaries, and gains 
   const uint64_t rays = refined.statistics.counters.viewing_rays;
   CHECK(rays > pixels * 3 / 2);
   CHECK(rays < pixels * 20);
-  // Pixels amid a surface in even light keep their first ray: the same value as without.
+  // Pixels in uniform light on one surface keep their first ray, and so their value.
   size_t same = 0;
   for (size_t i = 0; i < pixels; ++i)
     same += plain.layers[0].image.pixels[i] == refined.layers[0].image.pixels[i];
   CHECK(same > pixels / 10);
-  // The reference: path. At equal viewing rays everywhere, refinement is the better use.
+  // The reference is path. For the same number of viewing rays refinement must have the lower
+  // error.
   RenderOptions even = o;
   even.spp = int((rays + pixels - 1) / pixels);
   RenderOptions reference = o;
@@ -188,10 +189,10 @@ TEST_CASE("kj92: refinement where nothing differs adds nothing") {
 TEST_CASE("kj92: a stop during preprocessing or rendering comes back soon, with what there is") {
   const PreparedScene scene(mixed_room());
   for (const double after : {0.0, 0.15, 0.8}) {
-    const bool is_rendering = after > 0.5;  // stopped by what has been rendered, not by time
+    const bool is_rendering = after > 0.5;  // stopped by rendering progress, not by time
     StopFlag stop = after == 0;
     RenderOptions o = coarse();
-    o.kj92.radiosity.meshing.element_size = after == 0.15 ? 0.05f : 0.4f;  // preprocessing is long
+    o.kj92.radiosity.meshing.element_size = after == 0.15 ? 0.05f : 0.4f;  // long preprocessing
     o.kj92.radiosity.unshot_fraction = after == 0.15 ? 1e-5f : 0.05f;
     o.spp = 1 << 16;
     o.max_spp = 1 << 17;
@@ -234,7 +235,7 @@ TEST_CASE("kj92: crops and single pixels") {
       prepare(scene, Method::kj92, o.kj92, Indirect::automatic, std::nullopt, 2, {}, never_stopped);
   o.preparation = preparation.get();
   const Image whole = render_now(scene, table_camera(), o).layers[0].image;
-  // A crop that begins at tiles' borders is the same picture, bit for bit.
+  // A crop aligned with tiles is bit-identical to the whole picture.
   o.has_crop = true;
   o.crop = {16, 16, 48, 32};
   const Image part = render_now(scene, table_camera(), o).layers[0].image;
@@ -304,7 +305,7 @@ TEST_CASE("kj92: sources far apart in size, rooms of a millimetre and of a kilom
 TEST_CASE("kj92: a light that touches a wall has no worse pixels than path's") {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {-1, -1, 0}, {1, 1, 2});
-  // Stands on the floor's edge against the wall, and one that lies in the wall's plane.
+  // One light stands on the floor's edge against the wall, another lies in the wall's plane.
   const uint32_t black = add_diffuse(s, Rgb{0});
   make_light(s,
              add_quad(s, black,
@@ -348,7 +349,7 @@ TEST_CASE("kj92room: the floor under the table samples D, open floor only probes
   settings.radiosity.meshing.patch_size = 0.8f;
   const auto p = prepare(scene, Method::kj92, settings, Indirect::automatic, std::nullopt, 2, {},
                          never_stopped);
-  // How source `name` is treated at the floor's point below (x, y).
+  // Returns how source `name` is treated at the floor's point below (x, y).
   const auto treatment_at = [&](float x, float y, uint32_t source) {
     const RadiosityMesh& mesh = p->solution.mesh;
     uint32_t best = no_point;
@@ -364,7 +365,7 @@ TEST_CASE("kj92room: the floor under the table samples D, open floor only probes
       if (t.source == source) return t.source_class.treatment;
     return SourceTreatment::general;
   };
-  uint32_t d = no_source;  // the largest: on the ceiling
+  uint32_t d = no_source;  // the largest, on the ceiling
   for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
     if (scene.scene.lights[e].polygon.size() == 4 && scene.scene.lights[e].polygon[0].z > 2.9f)
       d = e;

@@ -1,4 +1,4 @@
-// What lamps cover of pixels, exactly, and pictures by it.
+// Exact coverage of lamps in pixels, and pictures that use it.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -33,17 +33,19 @@ struct Lamps {
   void wall() { add_quad(scene, grey, {Vec3{-9, -9, -1}, {9, -9, -1}, {9, 9, -1}, {-9, 9, -1}}); }
 };
 
-// What the camera sees of lamps at places of a pixel, by rays, and what takes its place.
+// Sums over places in a pixel: what rays see of lamps, and the corrected values.
 struct Sums {
   double seen = 0, evened = 0, evening = 0, squares = 0;
   int count = 0;
 };
 
-// Of pixels whose cover is known: rays bring what `evened` makes of them, with little variance and
-// the same mean; of all that lamps touch how many are known. `free`: nothing hides a lamp.
+// Statistics of LightOutlines over a picture. For pixels with known coverage, corrected rays must
+// have little variance and the same mean. Also the number of pixels that lamps touch, and how many
+// of those are known.
 struct Found {
   size_t touched = 0, unknown = 0, known = 0, missed = 0;
-  double bias = 0, most_bias = 0, most_variance = 0;  // of radiance 1; of all pixels; of one
+  // for radiance 1: over all pixels; in one pixel
+  double bias = 0, most_bias = 0, most_variance = 0;
 };
 Found look(Lamps lamps, bool knows = true) {
   const PreparedScene scene(std::move(lamps.scene));
@@ -98,7 +100,7 @@ Found look(Lamps lamps, bool knows = true) {
 
 TEST_CASE("light outlines: what lamps of all shapes cover is exact in every pixel they touch") {
   std::vector<Lamps> all(6);
-  for (int i = 0; i < 20; ++i)  // many small ones, some within one pixel
+  for (int i = 0; i < 20; ++i)  // many small ones, several of them within one pixel
     make_light(all[0].scene,
                all[0].quad(-0.8f + 0.37f * float(i % 5), -0.7f + 0.41f * float(i / 5),
                            0.01f + 0.012f * float(i)),
@@ -107,7 +109,7 @@ TEST_CASE("light outlines: what lamps of all shapes cover is exact in every pixe
   add_disk_light(all[2].scene, all[2].grey, {0.1f, 0.2f, 0}, normalize(Vec3{0.3f, 0.5f, 1}), 0.6f,
                  Rgb{1});
   add_sphere_light(all[3].scene, all[3].grey, {-0.2f, 0.1f, 0.4f}, 0.4f, Rgb{1});
-  // A bent strip: two triangles that share an edge, one beside it.
+  // A bent strip: two triangles with a common edge and one next to them.
   add_mesh_light(all[4].scene, all[4].grey,
                  {{-0.5f, -0.5f, 0},
                   {0.5f, -0.4f, 0.3f},
@@ -126,9 +128,9 @@ TEST_CASE("light outlines: what lamps of all shapes cover is exact in every pixe
     CHECK(f.missed == 0);
     CHECK(f.unknown == 0);
     CHECK(f.known >= f.touched);
-    CHECK(f.most_bias < 0.01);  // of 1024 places that are spread evenly
+    CHECK(f.most_bias < 0.01);  // of 1024 stratified places
     CHECK(std::abs(f.bias) < 5e-4 * double(f.known));
-    CHECK(f.most_variance < 0.0015);  // up to .25 without
+    CHECK(f.most_variance < 0.0015);  // up to .25 without correction
     const Found not_wanted = look(lamps, false);
     CHECK(not_wanted.known == 0);
     CHECK(not_wanted.unknown == f.known);
@@ -137,7 +139,7 @@ TEST_CASE("light outlines: what lamps of all shapes cover is exact in every pixe
 }
 
 TEST_CASE("light outlines: sides that pieces share do not count twice, in large pictures too") {
-  // A fan of 30 triangles in about a pixel of many; another lamp touches it.
+  // A fan of 30 triangles within about one pixel of a large picture; another lamp touches it.
   Lamps lamps;
   constexpr int blades = 30;
   constexpr float radius = 0.0004f;
@@ -189,7 +191,7 @@ TEST_CASE("light outlines: nothing is known of what hides, varies or is out of f
   Lamps hidden;
   make_light(hidden.scene, hidden.quad(-0.4f, -0.4f, 0.8f), Rgb{1});
   Lamps before = hidden, lens = hidden, behind = hidden, away = hidden, textured = hidden;
-  // A wire in front: the pixels at its ends, where it crosses the outline, are not known.
+  // A wire in front: coverage is unknown where it crosses the outline.
   add_quad(before.scene, before.grey, {Vec3{-2, 0, 1}, {2, 0, 1}, {2, 0.02f, 1}, {-2, 0.02f, 1}});
   const Found crossed = look(before), free = look(hidden);
   CHECK(free.unknown == 0);
@@ -201,7 +203,7 @@ TEST_CASE("light outlines: nothing is known of what hides, varies or is out of f
   lens.camera.lens_radius = 0.05f;
   lens.camera.focal_distance = 2;
   CHECK(look(lens).known == 0);
-  // All of it behind something: not even seen.
+  // Entirely hidden, so not visible at all.
   add_quad(behind.scene, behind.grey, {Vec3{-2, -2, 1}, {2, -2, 1}, {2, 2, 1}, {-2, 2, 1}});
   const Found none = look(behind);
   CHECK(none.known + none.unknown == 0);
@@ -250,11 +252,11 @@ TEST_CASE("lamps in sight: the mean stays, in pixels with things before them too
   const double spread = std::sqrt(ours.mean.variance_of_mean() + paths.mean.variance_of_mean());
   CAPTURE(ours.mean.mean());
   CAPTURE(paths.mean.mean());
-  CHECK(spread < 0.004 * paths.mean.mean());  // it could see a bias
+  CHECK(spread < 0.004 * paths.mean.mean());  // precise enough to reveal a bias
   CHECK(std::abs(ours.mean.mean() - paths.mean.mean()) < 3.5 * spread);
   double squares = 0;
   for (const Moments& p : ours.pixels) squares += p.variance_of_mean() * 8;
   const double noise = std::sqrt(squares / double(ours.pixels.size())) / paths.mean.mean();
   MESSAGE("noise ", noise);
-  CHECK(noise < 0.0075);  // .0089 where nothing is known of covers
+  CHECK(noise < 0.0075);  // .0089 without known coverage
 }

@@ -1,4 +1,4 @@
-// Reflected light errs by what is asked where neighbours share it, and where it comes from few
+// Indirect light meets the asked error where neighbours share it, and where it comes from few
 // cells.
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A patch of light on the floor, two or three cells wide, lights all the rest.
+// A patch of light on the floor, two or three cells wide, illuminates everything else.
 Scene room_with_patch() {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.7f, 0.6f, 0.5f}), {-2, -2, 0}, {2, 2, 2.5f});
@@ -33,7 +33,7 @@ RenderOptions picture(double error, uint64_t seed) {
   return o;
 }
 
-// Means of 8 × 8 pixels.
+// Returns the means of 8 × 8 pixels.
 std::vector<double> blocks(const Image& image) {
   std::vector<double> means;
   for (int y = 0; y < image.height; y += 8)
@@ -66,14 +66,14 @@ TEST_CASE("reflected light has no stains, and the same mean, from seed to seed")
   double stains = 0, shift = 0;
   for (size_t p = 0; p < pictures.size(); ++p) {
     shift += sqr(sums[p] / all - 1) / double(pictures.size() - 1);
-    // … each over its own mean
+    // each relative to its own mean
     for (size_t b = 0; b < n; ++b)
       stains += sqr((pictures[p][b] / sums[p] - mean[b] / all) * all) /
                 (sqr(all) * double(n * (pictures.size() - 1)));
   }
   CAPTURE(std::sqrt(stains));
   CAPTURE(std::sqrt(shift));
-  // By 24 seeds .05 and .05.
+  // .05 and .05 with 24 seeds
   CHECK(std::sqrt(stains) < 0.056);
   CHECK(std::sqrt(shift) < 0.06);
 }

@@ -1,4 +1,4 @@
-// Renderings that end for time, or because they are good enough.
+// Renderings that end by a time limit or an error limit.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ size_t black_pixels(const Image& image) {
   return n;
 }
 
-// Over the picture: root of the mean square of what the layer `error` tells.
+// Returns the root mean square of layer `error` over the picture.
 double rms_told(const RenderResult& r) {
   double sum = 0;
   for (const Rgb& p : r.layers[1].image.pixels) sum += double(sqr(p.r));
@@ -98,7 +98,7 @@ TEST_CASE("a part-way picture keeps what it has: the rest alone is filled") {
   const StopFlag stop = false;
   Deadline deadline(stop, Deadline::Clock::now() + std::chrono::hours(100));
   o.deadline = &deadline;
-  // Time is up, all of a sudden, half-way.
+  // The time ends suddenly half-way.
   const ProgressCallback progress = [&](double share) {
     if (share < 0.5) return;
     deadline.keep_back(1e9);

@@ -1,4 +1,4 @@
-// Points under many lamps, to which points of lamps are drawn.
+// Measuring points under many lamps, whose light is estimated with sampled points on the lamps.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 const StopFlag runs_on = false;
 
-// 80 lamps from a centimetre to half a metre wide over boxes, of which single ones hide few.
+// 80 lamps from a centimetre to half a metre wide over boxes, each of which hides few lamps.
 Scene lamps_over_clutter() {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});

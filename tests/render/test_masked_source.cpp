@@ -1,4 +1,4 @@
-// Sources whose material has an alpha mask: holes send no light, however they are sampled.
+// Sources whose material has an alpha mask: holes emit no light, whatever the sampling.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A mesh source [x0,1] × [-1,1] at height 1 that shines down, u = (x + 1) / 2.
+// A mesh source [x0,1] × [-1,1] at height 1 that faces down, u = (x + 1) / 2.
 Scene source_from(float x0) {
   Scene s;
   add_diffuse(s, Rgb{0});

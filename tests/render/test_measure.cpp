@@ -1,4 +1,4 @@
-// Irradiance at points against closed forms, and standard errors against what they promise.
+// Irradiance at points against closed forms, and coverage of the confidence intervals.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -24,7 +24,7 @@ Scene lit_floor() {
   return s;
 }
 
-// Irradiance from the source of lit_floor, W/m².
+// Returns the irradiance from the source of lit_floor, W/m².
 double exact(const PreparedScene& scene, const MeasuringPoint& p) {
   return 10 * irradiance(scene.primitives[0], Vec3d(p.position), Vec3d(normalize(p.normal)));
 }
@@ -57,7 +57,7 @@ TEST_CASE("95 % intervals hold the closed form 93 to 97 % of the time") {
       for (size_t i = 0; i < points.size(); ++i) {
         const double lx = exact(scene, points[i]) * luminous_efficacy;
         const double off = std::abs(r.values[i].illuminance_lx - lx);
-        if (lx < 1) continue;  // the source barely shows over the horizon: most samples miss it
+        if (lx < 1) continue;  // the source is barely above the horizon and most samples miss it
         ++lit;
         inside += off <= 1.96 * r.values[i].standard_error;
       }
@@ -81,15 +81,15 @@ TEST_CASE("estimates have no bias: z-scores of many points") {
   const MeasureResult r = measure(scene, points, o, {}, never_stop);
   double sum = 0;
   for (size_t i = 0; i < points.size(); ++i)
-    if (r.values[i].standard_error > 0)  // else the source is below the horizon
+    if (r.values[i].standard_error > 0)  // otherwise the source is below the horizon
       sum += (r.values[i].illuminance_lx - exact(scene, points[i]) * luminous_efficacy) /
              r.values[i].standard_error;
-  // The mean of n z-scores of unit variance (a little under, see measure.h).
+  // The mean of n z-scores whose variance is slightly below 1 (measure.h).
   CHECK(std::abs(sum / std::sqrt(double(points.size()))) < 4);
 }
 
 TEST_CASE("a closed white-ish room: mean irradiance is flux / (area (1 - reflectance))") {
-  // Every wall emits alike, so irradiance is the same everywhere: E = pi L / (1 - rho).
+  // All walls emit alike, so irradiance is the same everywhere: E = pi L / (1 - rho).
   Scene s;
   const float rho = 0.6f, radiance = 2;
   const uint32_t grey = add_diffuse(s, Rgb{rho});
@@ -111,7 +111,8 @@ TEST_CASE("a closed white-ish room: mean irradiance is flux / (area (1 - reflect
   }
 }
 
-// The foot of a wall whose front, then whose back, has the light; the corner of two; a table's leg.
+// The foot of a wall that is lit from the front, then from the back; a corner of two walls; a
+// table's leg.
 TEST_CASE("points exactly in another surface are measured before its front by every method") {
   for (const bool is_front_lit : {true, false}) {
     Scene s = lit_floor();

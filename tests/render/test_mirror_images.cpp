@@ -1,4 +1,4 @@
-// Lights in flat mirrors: the default asks their images, against closed forms and paths.
+// Lights in flat mirrors: certified light by mirror images, against closed forms and paths.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ uint32_t add_mirror(Scene& s, float reflectance = 1) {
   return uint32_t(s.materials.size() - 1);
 }
 
-// In the plane z = 0, to be seen from above; of several triangles, to be merged.
+// Adds a square in the plane z = 0 that faces up, of several triangles that merge.
 void add_mirror_square(Scene& s, uint32_t material, float half) {
   Mesh m;
   m.material = material;
@@ -41,7 +41,7 @@ void add_mirror_square(Scene& s, uint32_t material, float half) {
   s.meshes.push_back(std::move(m));
 }
 
-// Facing down, with its middle at (x, y, z).
+// Adds a lamp that faces down, with its centre at c.
 void add_lamp(Scene& s, uint32_t material, const Vec3& c, float half, Rgb radiance) {
   make_light(s,
              add_quad(s, material,
@@ -101,7 +101,8 @@ TEST_CASE("what stands before a mirror hides lamps in it, on either way") {
     const uint32_t black = add_diffuse(s, Rgb{0});
     add_mirror_square(s, add_mirror(s), 3);
     add_lamp(s, black, {1, 0, 2}, 0.1f, Rgb{50});
-    // from (-1,0,2) to the image at (1,0,-2) and back up: at x = -.25 and .75 for z = .5, 1.5
+    // the path from (-1,0,2) to the image at (1,0,-2) and back up passes x = -.25 and .75 at z = .5
+    // and 1.5
     const float x = z < 1 ? -0.25f : 0.75f;
     add_quad(s, black,
              {Vec3{x - 0.15f, -0.2f, z},
@@ -144,7 +145,7 @@ TEST_CASE("a point light, which no path finds, is seen in a mirror by the invers
   add_mirror_square(s, add_mirror(s, 1), 2);
   add_point(s, {0, 0, 1}, Rgb{5});
   const PreparedScene scene(std::move(s));
-  // from (0,0,2), which faces down: the light itself at 1 m, its image at 3 m
+  // from (0,0,2), facing down: the light itself is at 1 m, its image at 3 m
   for (const Indirect indirect : {Indirect::automatic, Indirect::cells}) {
     const Measurement m = at(scene, {0, 0, 2}, {0, 0, -1}, Method::certified, 0, indirect);
     CHECK(double(m.irradiance.g) == doctest::Approx(5 + 5.0 / 9).epsilon(1e-4));
@@ -157,7 +158,7 @@ TEST_CASE("rooms with mirrors, in pictures: the mean of paths, and the same for 
   const uint32_t mirror = add_mirror(s, 0.9f);
   add_box_inside(s, white, {0, 0, 0}, {4, 4, 3});
   add_box_inside(s, white, {1.5f, 1.2f, 0}, {2.1f, 2, 0.8f});
-  // two that see each other
+  // two mirrors that see each other
   add_quad(s, mirror, {Vec3{0.01f, 0.8f, 0.5f}, {0.01f, 3, 0.5f}, {0.01f, 3, 2}, {0.01f, 0.8f, 2}});
   add_quad(s, mirror, {Vec3{3.99f, 1, 0.5f}, {3.99f, 1, 2}, {3.99f, 2.5f, 2}, {3.99f, 2.5f, 0.5f}});
   add_lamp(s, white, {1.2f, 2, 2.9f}, 0.35f, Rgb{20});
@@ -183,11 +184,11 @@ TEST_CASE("the image of a scene: what is cut, what is behind, what cannot be cut
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
   const uint32_t material = add_mirror(s);
   add_mirror_square(s, material, 1);
-  add_quad(s, grey, {Vec3{2, 0, -1}, {2, 1, -1}, {2, 1, 1}, {2, 0, 1}});    // through the plane
-  add_quad(s, grey, {Vec3{0, 0, -1}, {1, 0, -1}, {1, 1, -1}, {0, 1, -1}});  // behind
+  add_quad(s, grey, {Vec3{2, 0, -1}, {2, 1, -1}, {2, 1, 1}, {2, 0, 1}});    // across the plane
+  add_quad(s, grey, {Vec3{0, 0, -1}, {1, 0, -1}, {1, 1, -1}, {0, 1, -1}});  // behind it
   add_lamp(s, grey, {0, 0, 2}, 0.1f, Rgb{1});
   make_light(s, add_quad(s, grey, {Vec3{3, 0, -1}, {3, 1, -1}, {3, 1, 1}, {3, 0, 1}}), Rgb{1},
-             false);  // shines on both sides of the plane
+             false);  // on both sides of the plane
   FlatMirror m;
   m.normal = {0, 0, 1};
   m.tolerance = 1e-5f;
@@ -197,7 +198,8 @@ TEST_CASE("the image of a scene: what is cut, what is behind, what cannot be cut
   REQUIRE(image.has_value());
   REQUIRE(image->lights == std::vector<uint32_t>{0});
   CHECK(image->scene.lights[0].polygon.at(0).z == doctest::Approx(-2));
-  double front = 0, behind = 0;  // area of what was cut, of plane x = 2
+  // area on either side of the plane, of the quad that was cut (plane x = 2)
+  double front = 0, behind = 0;
   for (const Mesh& mesh : image->scene.meshes)
     for (const Triangle& t : mesh.triangles) {
       const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];

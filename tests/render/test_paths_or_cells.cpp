@@ -1,4 +1,5 @@
-// `--indirect auto`: objects in the open by paths, rooms by cells; and what paths are sampled for.
+// `--indirect auto`: paths for objects in the open, cells for rooms, and sampling of paths by
+// noise.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -16,7 +17,7 @@ using namespace troffer::test;
 
 namespace {
 
-// Small plates turned every way, coated or of metal, under an even sky.
+// Small plates in random directions, coated or of metal, under a uniform sky.
 Scene heap_of_plates(uint32_t count) {
   Scene s;
   Material coated, metal;
@@ -53,7 +54,8 @@ RenderOptions small_picture() {
   return o;
 }
 
-// Over the mean, by their product the noise of two halves of a reference does not count.
+// Returns the error relative to the mean. The product with two halves of a reference cancels the
+// reference's noise.
 double error_of(const Image& image, const std::array<Image, 2>& halves) {
   double sum = 0;
   for (size_t i = 0; i < image.pixels.size(); ++i)
@@ -132,7 +134,7 @@ TEST_CASE(
 TEST_CASE("--indirect auto: cells where light comes by few paths, so that most see none") {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.6f}), {-1, -1, 0}, {1, 1, 2});
-  // Behind the camera, upon the floor.
+  // On the floor behind the camera.
   add_spot(s, {-0.8f, -0.8f, 1}, {0, 0, -1}, std::cos(0.02f), std::cos(0.04f), Rgb{5});
   const PreparedScene room(std::move(s));
   const Camera inside = look_at({-0.5f, -0.5f, 1.2f}, {1, 1, 1.2f}, {0, 0, 1}, 50);
@@ -153,10 +155,10 @@ TEST_CASE("--indirect auto: cells are given up once they are more than paths are
   o.width = 160;
   o.height = 120;
   o.error = 0.02;
-  // Cells are begun …
+  // Making cells begins,
   REQUIRE(forecast_paths(scene, view, 0.75 * o.error, 1 << 14, o.seed, counters).rays_for_cells >
           0);
-  // … but not ended.
+  // but is given up.
   CHECK(render_now(scene, above, o).statistics.is_by_paths);
 }
 
@@ -172,7 +174,7 @@ TEST_CASE("forecast of paths: rays by the error and by how even they are, as man
     return forecast_paths(scene, view, error, most, 0, counters);
   };
   const PathForecast coarse = forecast(160, 0.02, 1 << 30), fine = forecast(160, 0.01, 1 << 30);
-  CHECK(coarse.evenness > 0.02);  // a path's numbers are spread within the pixel
+  CHECK(coarse.evenness > 0.02);  // a path's random numbers are stratified within the pixel
   CHECK(coarse.evenness < 0.35);
   CHECK(fine.evenness == doctest::Approx(coarse.evenness).epsilon(0.01));
   const double more = std::pow(4, 1 / (1 + coarse.evenness));

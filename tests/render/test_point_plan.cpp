@@ -1,4 +1,4 @@
-// How many samples a measured point gets for its error.
+// Allocation of samples to measuring points.
 #include "render/point_plan.h"
 
 #include <doctest/doctest.h>
@@ -22,7 +22,7 @@ PointLight of_errors(double lx, double direct, double indirect) {
   return p;
 }
 
-// By the plan's samples, which were those of `before`.
+// Returns the error expected with `plan`, given what `found` has with the samples of `before`.
 double error_expected(const PointLight& found, const PointPlan& before, const PointPlan& plan) {
   const double all = double(plan.samples) / before.samples;
   const double of_direct = all * before.samples_per_direct / plan.samples_per_direct;
@@ -40,7 +40,7 @@ double samples_in_all(const std::vector<PointPlan>& plans) {
   return sum;
 }
 
-// Points of 1 to 1000 lx; of each either part errs by 1 to 10 % of its light.
+// Points of 1 to 1000 lx; either part of each errs by 1 to 10 % of its light.
 std::vector<PointLight> list(size_t points, Random& random) {
   std::vector<PointLight> l;
   for (size_t i = 0; i < points; ++i) {
@@ -69,7 +69,7 @@ TEST_CASE("a point that errs by no more than planned keeps its plan") {
   plan.tolerance = 2;
   CHECK(enough_for_one(of_errors(100, 0.2, 0.4), plan).samples == 4096);
   CHECK(enough_for_one(of_errors(100, 0.3, 0.5), plan).samples > 4096);
-  plan.error = 0;  // so many samples do
+  plan.error = 0;  // exactly this number of samples
   CHECK(enough_for_one(of_errors(100, 50, 50), plan).samples == 4096);
 }
 
@@ -88,13 +88,13 @@ TEST_CASE("plans bring the error down to what is aimed at, by more of what errs"
       CHECK(plan.samples_per_direct >= 1);
       // Whole sets of 32, with direct light in each.
       CHECK(plan.samples % (32 * plan.samples_per_direct) == 0);
-      // Not much more than is needed: both parts are powers of two.
+      // Not much more than needed: both parts are powers of two.
       const double least = (direct + indirect) * (direct + indirect) / (0.25 * 0.25);
       const double work = double(plan.samples) / before.samples *
                           (1 + double(before.samples_per_direct) / plan.samples_per_direct);
       CHECK(work <= 4 * (least + 2));
     }
-  // Where direct light alone errs, other samples stay few.
+  // If direct light alone errs, the number of other samples stays small.
   CHECK(enough_for_one(of_errors(100, 0.9, 0.001), before).samples == 4096);
   CHECK(enough_for_one(of_errors(100, 0.9, 0.001), before).samples_per_direct == 2);
   CHECK(enough_for_one(of_errors(100, 0.001, 0.9), before).samples == 16 * 4096);
@@ -116,7 +116,7 @@ TEST_CASE("a list errs by what is aimed at, by hardly more samples than the leas
   for (const size_t points : {2u, 20u, 300u}) {
     CAPTURE(points);
     const std::vector<PointLight> l = list(points, random);
-    PointPlan before{32, 1, 2, 0.0025};  // so few that nearly all want more
+    PointPlan before{32, 1, 2, 0.0025};  // so few that nearly all points need more
     before.most_times = 1 << 20;
     const std::vector<PointPlan> plans = enough_for(l, std::vector<PointPlan>(points, before));
     const double mean = mean_light(l);
@@ -138,7 +138,7 @@ TEST_CASE("a list errs by what is aimed at, by hardly more samples than the leas
 
 TEST_CASE("bright points are measured better than their own light alone asks for") {
   std::vector<PointLight> l(100, of_errors(1, 0, 0.01));
-  l[40] = of_errors(50, 0, 0.5);  // as well known, for its light
+  l[40] = of_errors(50, 0, 0.5);  // the same relative error
   const std::vector<PointPlan> plans =
       enough_for(l, std::vector<PointPlan>(100, {4096, 1, 32, 0.0025}));
   CHECK(plans[40].samples >= 4 * plans[0].samples);
@@ -167,20 +167,20 @@ TEST_CASE("few samples tell how many are wanted, and serve for nothing else") {
   CHECK(first.samples == 2048);
   CHECK(first.samples / first.samples_per_direct == 128);
   CHECK(first.samples * first.most_times == 4096 * 128);
-  // Of what errs by no more than it may, the least.
+  // The least number, if errors are as small as they may be.
   CHECK(enough_for_one(of_errors(100, 0.01, 0.01), plan).samples == 2 * 4096);
   CHECK(enough_for_one(of_errors(100, 0.01, 0.01), plan).samples_per_direct == 64);
   CHECK(enough_for_one(of_errors(0, 0, 0), plan).samples == 2 * 4096);
   CHECK(enough_for_one(of_errors(100, 0, 0.9), plan).samples == 16 * 2048);
   CHECK(enough_for_one(of_errors(100, 0, 1000), plan).samples == 128 * 4096);
-  plan.error = 0;  // so many samples do
+  plan.error = 0;  // exactly this number of samples
   CHECK(first_of(plan).samples == 4096);
   CHECK(enough_for_one(of_errors(100, 0, 0.9), plan).samples == 4096);
 }
 
 TEST_CASE("spare samples are taken where they still tell more than all of them share") {
   PointPlan plan{4096, 1, 32, 0.0025};
-  std::vector<PointLight> l(10, of_errors(100, 0, 0.2));  // well as they are
+  std::vector<PointLight> l(10, of_errors(100, 0, 0.2));  // accurate enough already
   const std::vector<PointPlan> plans(10, plan);
   const double had = samples_in_all(plans);
   CHECK(samples_in_all(enough_for(l, plans, 0)) == had);
@@ -188,7 +188,7 @@ TEST_CASE("spare samples are taken where they still tell more than all of them s
   const double more = samples_in_all(enough_for(l, plans, 10 * had));
   CHECK(more >= 10 * had);
   CHECK(more <= 20 * had);
-  // The root of sixteen times as many brings them to that.
+  // Sixteen times as many samples reduce the error by four, down to the shared one.
   for (PointLight& p : l) p.shared_error = 0.051;
   CHECK(enough_for(l, plans, 1e9)[0].samples == 16 * 4096);
   for (PointLight& p : l) p.shared_error = 1;
@@ -208,7 +208,8 @@ TEST_CASE("few draws that were all open want more of themselves alone") {
   const int without = enough_for(l, std::vector<PointPlan>(50, plan))[0].samples;
   l.insert(l.end(), 50, p);
   CHECK(enough_for(l, std::vector<PointPlan>(100, plan))[0].samples <= without);
-  // As many as the plan allows do not bring the rest to the aim: no reason for as many draws.
+  // The largest allowed number of samples does not bring the rest to the aim, so the sampled points
+  // of sources need not be as many.
   plan.error = 0.00025;
   const PointPlan most = enough_for_one(of_errors(100, 0.02, 0.5), plan);
   CHECK(most.samples == 128 * 4096);

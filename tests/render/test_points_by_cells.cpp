@@ -1,4 +1,4 @@
-// Points that gather from cells, by those alone: nobody audits them.
+// Measuring points by cells alone, without an audit.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -16,8 +16,8 @@ namespace {
 
 const StopFlag runs_on = false;
 
-// A point light in one half of a room without windows, and the other half, which gets what passes
-// over a partition.
+// A point light in one half of a room without windows; the other half gets what passes over a
+// partition.
 Scene room_behind_a_partition() {
   Scene s = WindowRoom::make(0.7f, false);
   constexpr float x = 2.5f, z = WindowRoom::Z - 0.1f;
@@ -49,7 +49,7 @@ class List {
     return lx_of(measured(*make_integrator(scene_, Method::path, settings_, nullptr, nullptr),
                           {.samples = samples, .samples_per_estimate = 1}, 5));
   }
-  // gathering: most_rays 0: cells know nothing of points. rays: of rows.
+  // gathering: with most_rays 0, cells do not depend on points. rays: number of rays of rows.
   std::vector<double> by_cells(int samples, const GatheringPoints& gathering, uint64_t seed,
                                uint64_t* rays = nullptr) const {
     return lx_of(values_by_cells(samples, gathering, seed, rays));
@@ -107,7 +107,7 @@ TEST_CASE("cells for many points that are measured well have more rays, and less
   const List list(scene, points_behind_the_partition(16));
   constexpr int samples = 1 << 14;
   uint64_t rays = 0;
-  // Cells of different seeds, asked by the same gather rays.
+  // Cells of different seeds, read by the same gather rays.
   const auto noise = [&](const GatheringPoints& gathering) {
     const std::vector<double> first = list.by_cells(samples, gathering, 1, &rays);
     double squares = 0;
@@ -130,11 +130,11 @@ TEST_CASE("cells for many points that are measured well have more rays, and less
   CHECK(now < 0.6 * before);
 }
 
-// By few rays of cells, and by many.
+// With few and with many rays of cells.
 TEST_CASE("what cells are off by is told, point by point") {
   const PreparedScene scene(room_behind_a_partition());
   std::vector<MeasuringPoint> points = points_behind_the_partition(6);
-  // Just below the gap: cells that are far brighter than others.
+  // Just below the gap, where some cells are far brighter than others.
   points.push_back({{2.4, 2, 2.7}, {1, 0, 0}});
   const List list(scene, points);
   constexpr int samples = 1 << 13, seeds = 10;
@@ -172,7 +172,7 @@ TEST_CASE("what cells are off by is told, point by point") {
     CHECK(one.values[i].shared_error == another.values[i].shared_error);
 }
 
-// In a room with lamps of 60 cm that hang 5 cm below the ceiling, over louvres of 5 cm.
+// In a room with lamps of 60 cm, 5 cm below the ceiling, over louvres of 5 cm.
 TEST_CASE("points in the gap behind a luminaire get the light that comes in at its edges") {
   Scene room = WindowRoom::make(0.7f, false);
   const uint32_t grey = add_diffuse(room, Rgb{0.7f});
@@ -276,6 +276,6 @@ TEST_CASE("rays of cells among leaves that light passes do not branch at every l
   REQUIRE(make_integrator(scene, Method::certified, settings, nullptr, &cells));
   CAPTURE(cells.statistics.rays);
   CAPTURE(cells.statistics.entries);
-  // Either side of the leaf at which a ray ends.
+  // At most the two sides of the leaf at which a ray ends.
   CHECK(double(cells.statistics.entries) < 2 * double(cells.statistics.rays));
 }

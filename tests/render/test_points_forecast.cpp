@@ -1,4 +1,4 @@
-// Lists of points by cells or by paths: which is chosen, and what paths bring there.
+// Choice between cells and paths for lists of points, and results of paths there.
 #include "render/points_forecast.h"
 
 #include <doctest/doctest.h>
@@ -20,7 +20,7 @@ namespace {
 
 const StopFlag goes_on = false;
 
-// A lamp of half a metre under a ceiling; the window is an open hole to where nothing is.
+// A lamp of half a metre under a ceiling; the window is an open hole to the outside, which is dark.
 PreparedScene room_with_lamp() {
   Scene s = WindowRoom::make(0.6f);
   const uint32_t grey = add_diffuse(s, Rgb{0.6f});
@@ -86,7 +86,7 @@ TEST_CASE("points by certified light and paths beside it are those of path traci
     CHECK(std::abs(z) < 4);
     CHECK(squares < 1.4);
   }
-  // Of light straight from the lamp nothing is left to chance, and nothing of it is in the rest.
+  // Direct light is computed without randomness, and none of it is in the other part.
   CHECK(relative_error(mine.values, &PointLight::direct) <
         0.7 * relative_error(paths.values, &PointLight::direct));
   CHECK(relative_error(mine.values, &PointLight::indirect) <
@@ -117,14 +117,14 @@ TEST_CASE("a forecast tells as many samples as the error then takes") {
 }
 
 TEST_CASE("where paths find no light, cells are to look for it") {
-  Scene s = WindowRoom::make(0.6f, false);  // all light is outside
+  Scene s = WindowRoom::make(0.6f, false);  // all light comes from outside
   add_distant(s, {-0.5f, 0.1f, -0.75f}, Rgb{100});
   const PreparedScene dark(std::move(s));
   CHECK_FALSE(forecast(dark, 12).is_for_paths());
 }
 
 TEST_CASE("a lamp in a mirror, which few paths find, is asked for at all their vertices") {
-  // A mirror in the wall across shows a lamp of 2 cm, which hardly a path would find.
+  // A mirror in the opposite wall shows a lamp of 2 cm, which hardly any path would find.
   Scene s = WindowRoom::make(0.6f);
   Material mirror;
   mirror.kind = MaterialKind::conductor;
@@ -195,7 +195,7 @@ TEST_CASE("lists that are stopped at any time, while cells are made too, are tol
     });
     MeasureOptions o;
     o.indirect = Indirect::cells;
-    o.error = 1e-4;  // which takes much longer
+    o.error = 1e-4;  // takes much longer
     const MeasureResult r = measure(scene, points, o, {}, stop);
     later.join();
     CAPTURE(milliseconds);

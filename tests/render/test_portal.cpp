@@ -1,4 +1,4 @@
-// Portals: windows marked for an image or an even sky, by all methods.
+// Portals: windows marked for an image or a uniform sky, by all methods.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A rectangle in the wall at x = 5, so much larger than its window on all sides.
+// Returns a rectangle in the wall at x = 5, larger than the window by this margin on all sides.
 std::vector<Vec3> portal(float by) {
   constexpr float X = WindowRoom::X, y0 = WindowRoom::y0, y1 = WindowRoom::y1, z0 = WindowRoom::z0,
                   z1 = WindowRoom::z1;
@@ -24,7 +24,7 @@ std::vector<Vec3> portal(float by) {
       {X, y0 - by, z0 - by}, {X, y0 - by, z1 + by}, {X, y1 + by, z1 + by}, {X, y1 + by, z0 - by}};
 }
 
-// Bright about one direction, which the window shows to some of the floor.
+// Bright around one direction, from which the window lets light onto some of the floor.
 EnvironmentMap bright_spot() {
   EnvironmentMap map;
   map.projection = SphereMap::lat_long;
@@ -49,7 +49,7 @@ std::vector<Measurement> measured(const PreparedScene& scene,
   return measure(scene, points, o, {}, never_stopped).values;
 }
 
-// Mean of the values, of the first over the second, and its error.
+// Compares the means of the values by their ratio and its error.
 void check_same(const std::vector<Measurement>& a, const std::vector<Measurement>& b) {
   double sum_a = 0, sum_b = 0, variance = 0;
   for (size_t i = 0; i < a.size(); ++i) {
@@ -96,7 +96,7 @@ TEST_CASE("a portal over a window changes no light, and takes most of the varian
   }
 }
 
-// The window is the larger one: the portal's own sides decide.
+// The window is larger than the portal, so the portal's own sides decide.
 TEST_CASE("through a portal smaller than the window its own form factor arrives, by all methods") {
   const auto p = portal(-0.15f);
   const PreparedScene scene(lit(WindowRoom::make(0), false, p));

@@ -1,4 +1,4 @@
-// Irradiance at the sample points of a radiosity solution against the path tracer's.
+// Irradiance at the sample points of a radiosity solution against path tracing.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using namespace troffer;
 
 namespace {
 
-// Sample points, by area.
+// Chooses sample points with probability proportional to area.
 std::vector<uint32_t> choose_points(const RadiositySolution& s, int count) {
   std::vector<double> sums;
   double sum = 0;
@@ -36,7 +36,7 @@ Rgb direct_irradiance(const RadiositySolution& s, uint32_t point) {
 
 struct Compared {
   double mean = 0;    // ratio of sums minus 1
-  double rms = 0;     // of the mean
+  double rms = 0;     // relative to the mean
   double median = 0;  // relative
 };
 
@@ -65,7 +65,7 @@ TEST_CASE("kj92room: irradiance is the path tracer's, direct and in all") {
   const PreparedScene scene(import_scene(path));
   const StopFlag never = false;
   RadiosityOptions options;
-  options.meshing.element_size = 0.3f;  // coarser than by default, for time's sake
+  options.meshing.element_size = 0.3f;  // coarser than the default to save time
   const RadiositySolution s = preprocess(scene, options, 2, {}, never).solution;
   REQUIRE(s.is_complete);
   const std::vector<uint32_t> chosen = choose_points(s, 200);

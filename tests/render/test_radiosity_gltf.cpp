@@ -1,4 +1,4 @@
-// A radiosity solution as a file that shows it; the façade that computes, saves and loads it.
+// Export of a radiosity solution as glTF, and the façade that computes, saves and loads solutions.
 #include <doctest/doctest.h>
 #include <unistd.h>
 
@@ -43,7 +43,7 @@ RadiositySolution solve(const PreparedScene& scene, const RadiosityOptions& o) {
   return preprocess(scene, o, 2, {}, never).solution;
 }
 
-// A file in the temporary folder that goes when it is done with.
+// A temporary file, deleted at the end of its scope.
 struct TemporaryFile {
   TemporaryFile(const char* name, const std::vector<uint8_t>& bytes)
       : path((std::filesystem::temp_directory_path() /
@@ -107,7 +107,7 @@ TEST_CASE("colours of the display are radiosity times exposure") {
   const size_t at = json.find("\"exposure\":");
   REQUIRE(at != std::string::npos);
   const double exposure = std::stod(json.substr(at + 11));
-  const size_t counted = json.find("\"count\":");  // accessor 0: positions, then colours
+  const size_t counted = json.find("\"count\":");  // accessor 0 holds positions, accessor 1 colours
   REQUIRE(counted != std::string::npos);
   const auto count = size_t(std::stoul(json.substr(counted + 8)));
   double floor_sum = 0, floor_count = 0;
@@ -156,7 +156,7 @@ TEST_CASE("the display of nothing is a file too") {
 
 TEST_CASE("worlds of other axes are turned") {
   Scene s = small_room();
-  Camera c;  // z up, left-handed as pbrt's
+  Camera c;  // z up and left-handed, as in pbrt
   c.right = {1, 0, 0};
   c.up = {0, 0, 1};
   c.forward = {0, 1, 0};

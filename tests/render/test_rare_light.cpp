@@ -1,4 +1,4 @@
-// Standard errors where light arrives by few samples of many.
+// Standard errors where few of many samples find light.
 #include "render/rare_light.h"
 
 #include <doctest/doctest.h>
@@ -26,8 +26,8 @@ double normal(Random& random) {
   return sum;
 }
 
-// Of `lx`, by 32 sets that err by `noise` each; a part `rare` of it comes by so many samples of all
-// sets, on average.
+// Returns a point of `lx`, by 32 sets that err by `noise` each. A part `rare` of its light comes
+// from `met` samples on average over all sets.
 PointLight point(Random& random, double lx, double noise, double rare, double met) {
   SampleSets sets;
   for (int s = 0; s < most_sets; ++s) {
@@ -73,7 +73,8 @@ TEST_CASE("kurtosis: 3 of normal sets, as much as there are sets where one diffe
     for (int s = 0; s < most_sets; ++s) sets.add({}, 1e3 + normal(random));
     sum += sets.kurtosis() / lists;
   }
-  // Of samples of n: 3 (n - 1) / (n + 1), and twelve uniform numbers are 0.1 short of normal.
+  // Kurtosis of n normal samples: 3 (n - 1) / (n + 1). Sums of twelve uniform numbers are 0.1 below
+  // normal.
   CHECK(sum == doctest::Approx(2.9 * (n - 1) / (n + 1)).epsilon(0.02));
 }
 
@@ -82,7 +83,7 @@ TEST_CASE("points that missed rare light are told what others of the list have m
   std::vector<PointLight> points;
   for (int i = 0; i < 300; ++i) points.push_back(point(random, 100, 0.001, 0.02, 1.5));
   CHECK(share_that_holds(points, 100) < 0.8);
-  // One of them, by what all have met.
+  // One of them, with the information of all.
   std::vector<PointLight> few = points;
   size_t quiet = 0;
   while (few[quiet].all.standard_error > 0.1) ++quiet;

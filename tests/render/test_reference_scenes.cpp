@@ -1,4 +1,4 @@
-// Rooms that other renderers agree on.
+// Rooms with agreed reference values from other renderers.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 const std::string folder = std::string(TROFFER_SOURCE_DIR) + "/scenes/";
 
-// Mean over pixels and channels. It does not depend on the resolution, pixels being boxes.
+// Mean over pixels and channels. It does not depend on the resolution, since pixels are boxes.
 Moments mean_of(const PreparedScene& scene, const Camera& camera, RenderOptions o, int sets) {
   Moments m;
   for (int s = 0; s < sets; ++s) {
@@ -23,7 +23,7 @@ Moments mean_of(const PreparedScene& scene, const Camera& camera, RenderOptions 
   return m;
 }
 
-// Within `tolerance` (relative) of the value, and noise small enough to tell.
+// Checks that the mean is within `tolerance` (relative) of the value and its noise is small enough.
 void check_mean(const Moments& m, double expected, double tolerance) {
   CAPTURE(m.mean());
   CAPTURE(m.standard_error());
@@ -69,6 +69,6 @@ TEST_CASE("modern-hall-diffuse: as bright as its reference") {
   o.width = 160;
   o.height = 120;
   o.spp = 8;
-  // Rendered with spectra, which accounts for 0.4 % of the reference's mean.
+  // The reference was rendered with spectra, which accounts for 0.4 % of its mean.
   check_mean(mean_of(scene, scene.scene.cameras.at(0), o, 4), 0.47233, 6.5e-3);
 }

@@ -1,4 +1,4 @@
-// Refinement keeps the mean of the picture, whatever small and bright things its rays meet.
+// Refinement keeps the mean of the picture, however small and bright the things are that rays meet.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -33,7 +33,7 @@ Scene matte_room() {
   const uint32_t floor = add_diffuse(s, Rgb{0.6f});
   return room_of_small_lights(floor, 0.02f, s);
 }
-// Its floor shows the lights once more.
+// The floor is a mirror that shows the lights a second time.
 Scene mirror_room() {
   Scene s;
   Material mirror;
@@ -44,13 +44,13 @@ Scene mirror_room() {
   return room_of_small_lights(floor, 0.06f, s);
 }
 
-// Means of whole pictures, each with other random numbers.
+// Means of whole pictures with different seeds.
 Moments means_of(const PreparedScene& scene, const Camera& camera, RenderOptions o, int pictures) {
   o.seed = 1000 * uint64_t(o.spp);
   return render_ensemble(scene, camera, o, pictures).mean;
 }
 
-// Of direct light by path.
+// Compares with direct light by path.
 void check_mean(const PreparedScene& scene, const Vec3& target, float fov_deg, int pictures) {
   const Camera camera = look_at({0.3f, 0.3f, 1.6f}, target, {0, 0, 1}, fov_deg);
   RenderOptions o;
@@ -66,7 +66,7 @@ void check_mean(const PreparedScene& scene, const Vec3& target, float fov_deg, i
   CAPTURE(refined.mean());
   CAPTURE(right.mean());
   CAPTURE(spread);
-  CHECK(spread < 0.02 * right.mean());  // it could see a bias
+  CHECK(spread < 0.02 * right.mean());  // precise enough to reveal a bias
   CHECK(std::abs(refined.mean() - right.mean()) < 3.3 * spread);
 }
 
@@ -87,7 +87,7 @@ TEST_CASE("the edge map finds borders of objects, and every pixel that a small l
   const ViewingCamera viewing(camera, side, side);
   const PixelRect all{0, 0, side, side};
   const EdgeMap map(scene, viewing, all, LightOutlines(scene, viewing, all, true, 1), 1);
-  // By brute force: many rays in each pixel.
+  // Brute force: many rays in each pixel.
   size_t with_light = 0, missed = 0, marked = 0;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) {
@@ -111,7 +111,7 @@ TEST_CASE("the edge map finds borders of objects, and every pixel that a small l
   CHECK(with_light > 60);
   CHECK(missed == 0);
   CHECK(marked < 2 * with_light);
-  // What the camera sees a point at is where its ray goes.
+  // raster_of() is the inverse of ray().
   for (const Vec2 r : {Vec2{3.25f, 7.5f}, Vec2{50, 60.75f}}) {
     const Ray ray = viewing.ray(r, {0.5f, 0.5f});
     Vec2 back;
@@ -141,7 +141,8 @@ TEST_CASE("the layer viewing_error is the spread of a pixel's rays, and the stat
   const double n = 32 * 32;
   const ViewingErrors& e = r.statistics.viewing_errors;
   CHECK(e.relative_rms == doctest::Approx(std::sqrt(squares / n) / (mean / n)).epsilon(1e-4));
-  CHECK(squares > 100 * told);  // lights as edges, of which the sampling of sources knows nothing
+  // edges of lights, which the sampling of sources does not account for
+  CHECK(squares > 100 * told);
   CHECK(e.share_above > 0.05);
   CHECK(e.share_above < 1);
 }
@@ -150,8 +151,9 @@ namespace {
 
 constexpr int middle = 6;
 
-// How many rays the middle pixel of an even panel should get, of an error of 2 %, after four that
-// had these values. tells: the method has told that none of it is chance.
+// Returns the number of rays for the middle pixel of a uniform panel, for an error of 2 %, after
+// four samples with these values. tells: by the method's estimate, none of the variance is
+// independent of the position.
 template <class Value>
 int wanted_amid(const Value& value, bool tells = false) {
   constexpr int side = 2 * middle + 1;
@@ -186,7 +188,7 @@ int wanted_amid(const Value& value, bool tells = false) {
 
 }  // namespace
 
-// Amid clutter a few rays that all see the same are no proof that nothing else is there.
+// In clutter, a few rays that all see the same do not prove that nothing else is there.
 TEST_CASE("a pixel with even neighbours gets further rays amid clutter, and none beside a line") {
   const auto wanted = [&](const auto& varies) {
     return wanted_amid([&](int x, int y, int k) { return k == 0 && varies(x, y) ? 0.2 : 1.0; });
@@ -196,7 +198,7 @@ TEST_CASE("a pixel with even neighbours gets further rays amid clutter, and none
   };
   CHECK(wanted([](int, int) { return false; }) == 4);
   CHECK(wanted([](int x, int) { return x == middle + 2; }) == 4);
-  // Others around get 400: that is what a share of a quarter wants.
+  // Others around get 400, the number for a share of a quarter.
   const int amid = wanted(is_far);
   CHECK(amid > 16);
   CHECK(amid < 200);
@@ -204,14 +206,14 @@ TEST_CASE("a pixel with even neighbours gets further rays amid clutter, and none
 }
 
 TEST_CASE("a slope wants no further rays, an edge fewer than chance") {
-  // Of samples in the quarters of a pixel, 40 % from one pixel to the next.
+  // Samples in the quarters of a pixel; 40 % from one pixel to the next.
   const auto slope = [](int x, int, int k) {
     return 1 + 0.4 * (x - middle) + (k % 2 == 0 ? -0.1 : 0.1);
   };
   const auto uneven = [](int, int, int k) { return k % 2 == 0 ? 0.9 : 1.1; };
   CHECK(wanted_amid(slope) == 4);
   CHECK(wanted_amid(slope, true) == 4);
-  // .0133 / .0004 of them, and that to the power of 2/3.
+  // (.0133 / .0004) to the power of 2/3 with stratified samples.
   CHECK(wanted_amid(uneven) == 34);
   CHECK(wanted_amid(uneven, true) == 11);
 }

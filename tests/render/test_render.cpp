@@ -1,4 +1,4 @@
-// The picture does not depend on threads, tiles or crops; stopping, progress, layers.
+// Pictures do not depend on threads, tiles or crops; also stops, progress, layers.
 #include "render/render.h"
 
 #include <doctest/doctest.h>
@@ -24,7 +24,7 @@ RenderOptions small_options(Method method) {
   o.method = method;
   o.width = 53;
   o.height = 37;
-  o.spp = method == Method::path ? 19 : 3;  // more than one pass, and no power of two
+  o.spp = method == Method::path ? 19 : 3;  // more than one pass, and not a power of two
   o.shadow_rays = 5;
   o.aovs = all_aovs;
   return o;
@@ -80,7 +80,7 @@ TEST_CASE("every method refines the picture where it differs from its neighbours
     CHECK(rays(plain) == 53 * 37 * 4);
     CHECK(rays(refined) > rays(plain));
     CHECK(rays(refined) <= 53 * 37 * 24);
-    if (method == Method::fixed) CHECK(rays(refined) < 53 * 37 * 24);  // smooth places stay
+    if (method == Method::fixed) CHECK(rays(refined) < 53 * 37 * 24);  // uniform regions stay
     o.threads = 3;
     CHECK(is_identical(render_now(scene, mixed_room_camera(), o).layers, refined.layers));
     o.has_crop = true;
@@ -209,8 +209,8 @@ TEST_CASE("the error layer is the spread of pictures with other seeds") {
   o.height = 18;
   o.spp = 16;
   o.aovs = {Aov::error};
-  // Stratified samples do better than independent ones, which is what the layer stands for: the
-  // true error lies below, but not far below.
+  // Stratified samples err less than independent ones, for which the layer stands. The actual error
+  // must lie below, but not far below.
   const Ensemble e = render_ensemble(scene, mixed_room_camera(), o, 24);
   double claimed = 0, true_variance = 0;
   for (uint64_t seed = 0; seed < 8; ++seed) {
@@ -246,7 +246,7 @@ TEST_CASE("progress rises to one, one call at a time") {
 }
 
 TEST_CASE("a stop leaves every pixel the mean of what it has") {
-  // All surfaces are black and shine with 2: any sample is exactly 2.
+  // All surfaces are black and emit 2, so any sample is exactly 2.
   Scene s;
   const uint32_t black = add_diffuse(s, Rgb{0});
   for (const uint32_t q : add_box_inside(s, black, {-1, -1, -1}, {1, 1, 1}))

@@ -1,4 +1,4 @@
-// How many samples a pixel wants, and how much is done for each (render/sample_spread.h).
+// Number of samples of a pixel and sampling effort for each (render/sample_spread.h).
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ TEST_CASE("what samples differ by says how many of them are wanted") {
 }
 
 TEST_CASE("the more rays of a pixel differ by what they meet, the less is done for each") {
-  // Chance of their own alone is not mended by more of it.
+  // Lower effort does not help against independent variance alone.
   CHECK(need({.chance = 0.5}, 16).effort_divisor == 1);
   uint32_t last = 1;
   for (const double edge : {0.1, 1.0, 10.0, 100.0}) {
@@ -47,7 +47,7 @@ TEST_CASE("the more rays of a pixel differ by what they meet, the less is done f
   CHECK(last == 16);
 }
 
-// Of so few rays as there may be, each is to be lit as well as can be.
+// If the number of rays is limited, each gets the full effort.
 TEST_CASE("a pixel that may not have as many rays as thrift wants does without") {
   const SampleSpread edge{.chance = 0.01, .placed = 100};
   const SampleNeed all = need(edge, 16);

@@ -1,5 +1,4 @@
-// Normals that the file gives and that have little to do with the surface: every method shows the
-// same light.
+// Shading normals that differ much from the surface: all methods compute the same light.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -21,8 +20,8 @@ std::string quad(const std::string& points, const std::string& more = "") {
          more + "\n";
 }
 
-// A room with a light in its ceiling and one low on the wall, from which light grazes what stands
-// in the middle.
+// A room with a light in its ceiling and a low one on the wall, whose light grazes the objects in
+// the middle.
 std::string room_with(const std::string& inside) {
   return "LookAt 0 -3.5 2  0 0 0.2  0 0 1\nCamera \"perspective\" \"float fov\" 30\n"
          "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 24\nWorldBegin\n"
@@ -39,14 +38,14 @@ std::string numbers(const Vec3d& v) {
   return std::to_string(v.x) + " " + std::to_string(v.y) + " " + std::to_string(v.z) + " ";
 }
 
-// A table top whose normals lean that far to the side.
+// A table top whose normals are tilted sideways by this angle.
 std::string leaning(double angle_deg) {
   const double a = rad_from_deg(angle_deg);
   const std::string n = numbers({std::sin(a), 0, std::cos(a)});
   return quad("-1 -1 0 1 -1 0 1 1 0 -1 1 0", "\"normal N\" [" + n + n + n + n + "]");
 }
 
-// A ball whose normals point anywhere.
+// A ball with random normals.
 std::string ragged_ball() {
   constexpr int n = 8;
   Random random(7);
@@ -85,7 +84,7 @@ TEST_CASE("the default and path agree where shading normals lean, up to along th
     double squares = 0;
     for (size_t i = 0; i < truth.pixels.size(); ++i)
       squares += std::pow(double(luminance(mine.pixels[i] - truth.pixels[i])), 2);
-    // Both are noisy: by .03, and by what 256 paths leave.
+    // Noise of both: .03, and that of 256 paths.
     CHECK(std::sqrt(squares / double(truth.pixels.size())) < 0.06 * mean(truth));
   }
 }

@@ -1,4 +1,4 @@
-// Shares of a picture: all of it, each pixel once, and the same bits.
+// Shares of a picture: together they are the whole picture, each pixel once, with the same bits.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -22,7 +22,7 @@ TileRules rules(int side, bool has_whole_tiles) {
   return r;
 }
 
-// All shares put together.
+// Joins all shares.
 std::vector<Layer> joined(const PreparedScene& scene, const Camera& camera, RenderOptions o,
                           int parts) {
   std::vector<Layer> all;
@@ -108,7 +108,7 @@ TEST_CASE("shares cover what is asked for, each pixel once, and are about as lar
           if (asked.width() == 64 && side == 8) CHECK(largest <= 2 * smallest);
         }
   CHECK_THROWS_AS(share_of({0, 0, 16, 16}, rules(8, true), 1, 5), UsageError);
-  for (int part = 1; part <= 4; ++part)  // a tile each
+  for (int part = 1; part <= 4; ++part)  // one tile each
     CHECK(share_of({0, 0, 16, 16}, rules(8, true), part, 4).width() == 8);
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("shares of a picture join to the whole of it, bit for bit, by every me
   o.spp = 2;
   o.kj92.sampling.tree.allowed_variance = 0.1f;
   check_shares(o, 3);
-  o.max_spp = 8;  // refinement looks at all of the picture
+  o.max_spp = 8;  // refinement depends on the whole picture
   check_shares(o, 3);
   o.has_crop = true;
   o.crop = {3, 5, 38, 30};
@@ -140,7 +140,7 @@ TEST_CASE("… by the default, of a picture larger than what its gathers look at
   check_shares(o, 4);
 }
 
-// Lamps in the plane of the ceiling, behind wires; some sides run along borders of pixels.
+// Lamps in the plane of the ceiling behind wires; some sides lie along borders of pixels.
 TEST_CASE("outlines of lamps are the same for every region of the picture") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
@@ -179,7 +179,7 @@ TEST_CASE("outlines of lamps are the same for every region of the picture") {
   CHECK(off == 0);
 }
 
-// The mullions of its window lie exactly on corners of pixels.
+// The mullions of the window lie exactly on corners of pixels.
 TEST_CASE(
     "edges through pixels are the same for every region of the picture, also where rays tie") {
   const std::string folder = TROFFER_SOURCE_DIR "/scenes/daylight-room/";

@@ -27,7 +27,7 @@ Scene floor_of(float reflectance) {
   return s;
 }
 
-// Irradiance by one method, green, straight from lights.
+// Irradiance by one method, green channel, straight from lights.
 std::vector<Measurement> measured(const PreparedScene& scene,
                                   const std::vector<MeasuringPoint>& points, Method method,
                                   int spp) {
@@ -144,7 +144,7 @@ TEST_CASE("an open plain gets of a sky, a sun and an image what they bring, by e
   request.diffuse_lx = 9000;
   request.sun = SunRequest{120, 40, 1, 50'000.0};
   add_sky(s, request, make_compass({0, 0, 1}, 0, false));
-  // An image that is bright in one texel above, and even below.
+  // An image that is bright in one texel above and uniform below.
   EnvironmentMap map;
   map.width = 16;
   map.height = 8;
@@ -166,7 +166,7 @@ TEST_CASE("an open plain gets of a sky, a sun and an image what they bring, by e
     for (const Measurement& m : measured(scene, points, method, 4096)) {
       CAPTURE(std::string(method.row().name));
       const double error = m.standard_error / luminous_efficacy;
-      // Rays that agree with each other may miss little of a tree's source (kj92).
+      // Rays of a bintree that agree with each other may miss a small part of a source (kj92).
       const double bias = method == Method::kj92 ? 0.02 : 2e-4;
       CHECK(std::abs(double(m.irradiance.g) - expected) < bias * expected + 5 * error);
       CHECK(error < 0.02 * expected);
@@ -198,14 +198,14 @@ TEST_CASE("a convex body in a white environment: furnaces, whatever it is made o
     const PreparedScene scene(std::move(s));
     const Camera camera = look_at({0, -4, 1}, {0, 0, 0}, {0, 0, 1}, 40);
     for (const Method method : all_methods) {
-      // Those without indirect light lose what a ball of glass reflects within.
+      // Methods without indirect light lose what a glass ball reflects inside.
       if (c.material.kind == MaterialKind::dielectric && method != Method::path) continue;
       const Ensemble e = render_ensemble(scene, camera, small(method), 24);
       CAPTURE(c.name);
       CAPTURE(std::string(method.row().name));
       CAPTURE(e.mean.mean());
       CAPTURE(e.mean.standard_error());
-      // Rays that agree with each other may miss little of a tree's source (kj92).
+      // Rays of a bintree that agree with each other may miss a small part of a source (kj92).
       const double bias = method == Method::kj92 ? 0.02 : 0.0;
       CHECK(pixels_off(
                 e, [](size_t) { return 3.0; }, double(c.loss) + bias) == 0);
@@ -219,7 +219,7 @@ TEST_CASE("a viewing ray that misses shows the environment, and nothing without 
   for (const float L : {0.0f, 1.0f}) {
     Scene s = floor_of(0.5f);
     if (L > 0) add_environment(s, Rgb{1, 2, 3} * L);
-    add_point(s, lamp, Rgb{1});  // not seen
+    add_point(s, lamp, Rgb{1});  // not visible
     const PreparedScene scene(std::move(s));
     const Camera up = look_at({0, 0, 1}, {0, 0, 5}, {0, 1, 0}, 60);
     for (const Method method : all_methods) {
@@ -266,7 +266,7 @@ TEST_CASE("lights of all kinds together: the same bytes for 1 and 4 threads, the
     }());
     CAPTURE(std::string(method.row().name));
     CHECK(is_identical(a.layers, b.layers));
-    // Direct light alone, which all methods agree on but for noise.
+    // Direct light alone, on which all methods agree within noise.
     o.aovs = {Aov::direct};
     Moments direct;
     for (o.seed = 0; o.seed < 24; ++o.seed)

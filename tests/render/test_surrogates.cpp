@@ -1,4 +1,4 @@
-// Rays that only look at what is known of light: the same mean, with less noise where edges are.
+// Surrogate samples: the same mean, with less noise at edges.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A room whose window, of its own light, is behind slats.
+// A room with a window that emits light, behind slats.
 Scene room_behind_blinds() {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f, 0.5f, 0.4f}), white = add_diffuse(s, Rgb{0.8f});
@@ -73,13 +73,13 @@ TEST_CASE(
   CHECK(double(layers[1].image.at(0, 0).g) == doctest::Approx(direct));
   CHECK(double(layers[2].image.at(0, 0).g) == doctest::Approx(indirect));
   CHECK(double(layers[0].image.at(0, 0).g) == doctest::Approx(direct + indirect));
-  CHECK(layers[0].image.at(1, 0) == Rgb{4});  // without glances: the mean of its samples
+  CHECK(layers[0].image.at(1, 0) == Rgb{4});  // without surrogates: the mean of its samples
   CHECK(layers[3].image.at(0, 0) == Rgb{0.5f});
   CHECK(double(layers[3].image.at(1, 0).g) == doctest::Approx(0.3));
   const PixelEstimate e = film.estimate(0, 0);
   CHECK(e.luminance == doctest::Approx(direct + indirect));
   CHECK(e.rest == doctest::Approx(1));
-  CHECK(e.error_of_rest == doctest::Approx(0.5));  // of rests 1.5 and 0.5
+  CHECK(e.error_of_rest == doctest::Approx(0.5));  // of the differences 1.5 and 0.5
   CHECK(e.standard_error == doctest::Approx(std::sqrt(0.25 + 1 * 3 / 5.0)));
 }
 
@@ -108,7 +108,7 @@ TEST_CASE("lamps evened out: no pixel sends less light than none, but what its r
   film.add(0, 0, b, 0, 0);
   CHECK(film.layers()[0].image.at(0, 0).r == doctest::Approx(0.2f));
   CHECK(film.layers()[0].image.at(0, 0).g == doctest::Approx(0.2f));
-  // One that is more than none stays evened.
+  // A pixel that stays positive keeps the correction.
   b.evened = {Rgb{0.25f}};
   b.direct = {Rgb{0.2f} + b.evened[0]};
   b.known[0].direct = b.evened[0];
@@ -129,7 +129,7 @@ TEST_CASE("glances: the mean of a picture with blinds stays") {
   CAPTURE(refined.mean());
   CAPTURE(even.mean());
   CAPTURE(spread);
-  CHECK(spread < 0.004 * even.mean());  // it could see a bias
+  CHECK(spread < 0.004 * even.mean());  // precise enough to reveal a bias
   CHECK(std::abs(refined.mean() - even.mean()) < 3.3 * spread);
 }
 
@@ -170,7 +170,7 @@ TEST_CASE("direct light alone: edges get the rays that they want, and the error 
   o.shadow_rays = 16;
   const Moments fixed = render_ensemble(scene, at_window, o, 6).mean;
   const double spread = std::sqrt(means.variance_of_mean() + fixed.variance_of_mean());
-  CHECK(spread < 0.01 * fixed.mean());  // it could see a bias
+  CHECK(spread < 0.01 * fixed.mean());  // precise enough to reveal a bias
   CHECK(std::abs(means.mean() - fixed.mean()) < 3.3 * spread);
 }
 
@@ -204,7 +204,7 @@ TEST_CASE("glances: blinds before a window err by less than half, with fewer vie
 
 TEST_CASE("refinement: pixels behind blinds err by about what is asked, and by less if less is") {
   const PreparedScene scene(room_behind_blinds());
-  // Two halves of a reference: by their product their own noise does not count.
+  // The product with two halves of a reference cancels the reference's noise.
   std::array<Image, 2> halves;
   for (size_t i = 0; i < 2; ++i) {
     RenderOptions o = small_picture();
@@ -239,8 +239,8 @@ TEST_CASE("refinement: pixels behind blinds err by about what is asked, and by l
   CHECK(fine < 0.7 * coarse);
 }
 
-// Two thousand times as bright as the room, and three pixels wide: an error there of a thousandth
-// of the light is twice the picture's mean.
+// The light is two thousand times as bright as the room and three pixels wide. An error of a
+// thousandth of it is twice the picture's mean.
 TEST_CASE("glances: more at the outline of what is very bright") {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {0, 0, 0}, {3, 3, 2.5f});

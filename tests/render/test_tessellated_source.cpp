@@ -1,4 +1,4 @@
-// A panel cut into thousands of triangles lights a room as the panel itself does.
+// A panel that is cut into thousands of triangles gives the same light as the whole panel.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ Scene room() {
   return s;
 }
 
-// Hangs tilted, facing down.
+// Tilted, facing down.
 Place place_of_panel() {
   Place p;
   p.frame = Framed(normalize(Vec3d{0.2, 0.3, -1}));
@@ -38,7 +38,7 @@ Place place_of_panel() {
 RenderOptions options() {
   RenderOptions o;
   o.method = Method::certified;
-  o.max_spp = o.spp;  // both pictures by the same viewing rays
+  o.max_spp = o.spp;  // the same viewing rays in both pictures
   o.indirect = Indirect::none;
   o.width = 64;
   o.height = 48;

@@ -1,4 +1,4 @@
-// Things between the corners of pixels are found wherever they are seen, and nothing else is.
+// The search for sub-pixel features finds those that are visible, and nothing else.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -13,21 +13,21 @@ using namespace troffer::test;
 namespace {
 
 constexpr int pixels_along = 32;
-constexpr float far_away = 16;  // of the wall; a pixel is a metre wide there
+constexpr float far_away = 16;  // distance of the wall; a pixel is a metre wide there
 
-// Looks along y at 32 × 32 pixels.
+// A camera that looks along y at 32 × 32 pixels.
 ViewingCamera view_of_wall() {
   return {look_at({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 90), pixels_along, pixels_along};
 }
 
-// The place seen at a raster position, at this distance along y.
+// Returns the point at a raster position, at this distance along y.
 Vec3 at(float x, float y, float distance) {
   const ViewingCamera c = view_of_wall();
   const Ray r = c.ray({x, y}, {0.5f, 0.5f});
   return r.origin + r.direction * (distance / r.direction.y);
 }
 
-// A wall across the picture, in tiles of `each` pixels.
+// Adds a wall across the picture, in tiles of `each` pixels.
 void add_wall(Scene& s, float each = pixels_along) {
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
   Mesh mesh;
@@ -45,7 +45,7 @@ void add_wall(Scene& s, float each = pixels_along) {
   s.meshes.push_back(mesh);
 }
 
-// A triangle about the middle of a pixel.
+// Returns a triangle around the middle of a pixel.
 Mesh leaf_at(float x, float y, float distance, float size = 0.2f) {
   Mesh mesh;
   mesh.positions = {at(x - size, y - size, distance), at(x + size, y - size, distance),
@@ -93,7 +93,7 @@ TEST_CASE("what a wall hides is not found, nor are the tiles of a wall") {
   Scene tiles;
   add_wall(tiles, 0.25f);
   CHECK(found(tiles).empty());
-  // … nor a leaf behind another one, in the same pixel: one is found
+  // nor is a leaf behind another one in the same pixel
   Scene two;
   add_wall(two);
   two.meshes.push_back(leaf_at(10.5f, 12.5f, 5));
@@ -117,7 +117,7 @@ TEST_CASE("a wire between rows of corners is found in every pixel that it runs t
 TEST_CASE("small spheres and disks are found, larger ones are left to the corners") {
   Scene s;
   add_wall(s);
-  const float metres = 5.0f / far_away;  // a pixel, at that distance
+  const float metres = 5.0f / far_away;  // width of a pixel at that distance
   s.spheres.push_back({at(8.5f, 8.5f, 5), 0.3f * metres});
   Disk disk;
   disk.centre = at(20.5f, 9.5f, 5);
@@ -131,7 +131,7 @@ TEST_CASE("small spheres and disks are found, larger ones are left to the corner
   CHECK((pixels[1].x == 20 && pixels[1].y == 9));
 }
 
-// Each of them runs ten thousand pixels beyond the picture on either side.
+// Each wire extends ten thousand pixels beyond the picture on either side.
 TEST_CASE("of long wires only what lies in the picture takes time") {
   Scene s;
   add_wall(s);

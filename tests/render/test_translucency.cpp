@@ -1,4 +1,4 @@
-// Curtains, lampshades and opal panes: surfaces that light passes evenly.
+// Curtains, lampshades and opal panes: surfaces that transmit light diffusely.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ uint32_t add_screen(Scene& s, uint32_t material, float x) {
   return add_quad(s, material, {Vec3{x, -1, 0}, {x, 1, 0}, {x, 1, 2}, {x, -1, 2}});
 }
 
-// Nothing absorbs, and the same light comes from everywhere: so it does from all that stands there.
+// Nothing absorbs, and incident light is uniform, so everything has the same radiance.
 Scene white_screens() {
   Scene s;
   add_screen(s, add_paper(s, Rgb{0.3f}, Rgb{0.7f}), 0.5f);
@@ -52,7 +52,7 @@ Camera screens_camera() {
   return look_at({-2.5f, -2, 1.8f}, {0.3f, 0, 0.7f}, {0, 0, 1}, 50);
 }
 
-// A room that a curtain parts: the light is on one side, the camera on the other.
+// A room divided by a curtain: the light is on one side, the camera on the other.
 Scene parted_room() {
   Scene s;
   const uint32_t wall = add_diffuse(s, Rgb{0.6f, 0.5f, 0.4f});
@@ -66,7 +66,7 @@ Scene parted_room() {
           s, black,
           {Vec3{0.8f, -0.5f, 2.3f}, {0.8f, 0.5f, 2.3f}, {1.6f, 0.5f, 2.3f}, {1.6f, -0.5f, 2.3f}}),
       Rgb{10});
-  // Something whose shadow the curtain shows.
+  // An object whose shadow is visible on the curtain.
   add_quad(s, wall,
            {Vec3{0.4f, -0.4f, 0.6f}, {0.4f, 0.4f, 0.6f}, {0.4f, 0.4f, 1.4f}, {0.4f, -0.4f, 1.4f}});
   return s;
@@ -93,7 +93,7 @@ TEST_CASE("what lets light through and absorbs none is not seen in a furnace") {
   RenderOptions o = small_picture(Method::path);
   o.spp = 16;
   const Ensemble e = render_ensemble(scene, screens_camera(), o, 16);
-  // The coat keeps its energy within .15 % (bsdf/bsdf.h).
+  // The coat conserves energy within .15 % (bsdf/bsdf.h).
   CHECK(pixels_off(
             e, [](size_t) { return 2.0; }, 3e-3) == 0);
   CHECK(e.mean.mean() == doctest::Approx(2).epsilon(2e-3));
@@ -107,8 +107,8 @@ TEST_CASE("what lets light through and absorbs none is not seen in a furnace") {
 }
 
 TEST_CASE("light through a round sheet, against the closed form") {
-  // Around the sheet there is nothing, so that both of its sides see half a world each. At the
-  // darker one most paths end by Russian roulette, whatever side they have come to.
+  // Nothing surrounds the sheet, so each side sees half of the surroundings. On the darker sheet
+  // most paths end by Russian roulette, whichever side they arrive at.
   constexpr double radius = 5, height = 0.5, radiance = 3;
   for (const auto& [back, through] : {std::pair{0.3, 0.5}, {0.004, 0.016}}) {
     Scene s;
@@ -117,7 +117,7 @@ TEST_CASE("light through a round sheet, against the closed form") {
     Light& above = add_light(s, LightKind::sky, Rgb{float(radiance)});  // the ground is dark
     above.direction = {0, 0, -1};
     const PreparedScene scene(std::move(s));
-    // Its upper side gets pi L, and its lower one nothing.
+    // The upper side receives pi L, the lower one nothing.
     const double share = radius * radius / (radius * radius + height * height);
     const double expected = 3.14159265358979 * radiance * (1 - share + share * through);
     for (const Method method : {Method::certified, Method::path}) {
@@ -157,7 +157,7 @@ TEST_CASE("a curtain before the light: certified and cells as paths have it") {
       squares += std::pow(double(luminance(a.pixels[i]) - luminance(b.pixels[i])), 2);
     CHECK(std::sqrt(squares / double(a.pixels.size())) < 0.05 * mean(b));
   }
-  // Without what comes through all would be dark here.
+  // Without transmitted light everything would be dark here.
   o.threads = 1;
   CHECK(is_identical(render_now(scene, parted_camera(), o).layers, r.layers));
 }

@@ -1,4 +1,4 @@
-// Light that goes from metal to metal, many times, before it meets what is matte.
+// Light that is reflected many times between metals before it meets a matte surface.
 #include <doctest/doctest.h>
 
 #include "render/pictures.h"
@@ -9,7 +9,7 @@ using namespace troffer::test;
 
 namespace {
 
-// Walls of white metal, that spread what they reflect, around a grey table's top.
+// Walls of rough white metal around a grey table top.
 Scene metal_room(float reflectance, float alpha) {
   Scene s;
   Material m;

@@ -1,5 +1,5 @@
-// What is small and bright, as few of a gather's rays meet it: how many rays pixels get must not
-// depend on what they have met themselves.
+// A small bright region that few gather rays meet: the number of rays of a pixel must not depend on
+// its own samples.
 #include <doctest/doctest.h>
 
 #include "render/pictures.h"
@@ -10,7 +10,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A kitchen of matte cupboards, dark below and light above, lit by a strip above the worktop. The
+// A kitchen with matte cupboards, dark below and light above, lit by a strip above the worktop. The
 // floor gets most of its reflected light from there.
 Scene kitchen() {
   Scene s;
@@ -53,7 +53,7 @@ TEST_CASE("a floor lit by way of a worktop gets all of that light") {
     ours.seed = seed;
     made += mean(reflected_light(scene, camera, 64, 48, ours)) / pictures;
   }
-  // -.0104 where pixels decide by what they have met themselves, -.0051 by what others have
+  // -.0104 if pixels decide by their own samples, -.0051 if by others'.
   MESSAGE("reflected light off by ", made / right - 1);
   CHECK(made / right == doctest::Approx(1).epsilon(0.0085));
 }

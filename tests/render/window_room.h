@@ -1,4 +1,4 @@
-// A room without thickness, with a window in its wall at x = 5.
+// A room with walls of no thickness and a window in its wall at x = 5.
 #pragma once
 
 #include <vector>
@@ -28,7 +28,7 @@ struct WindowRoom {
     return s;
   }
 
-  // All over the room, .2 m above its floor.
+  // Points all over the room, .2 m above its floor.
   static std::vector<MeasuringPoint> points() {
     std::vector<MeasuringPoint> points;
     for (int i = 0; i < 4; ++i)

@@ -1,4 +1,4 @@
-// What a failed CHECK prints, by running it in a process of its own.
+// Captures the message of a failed CHECK by running it in a child process.
 #pragma once
 
 #include <sys/wait.h>
@@ -9,15 +9,15 @@
 
 namespace troffer::test {
 
-// Standard error of body() in a copy of this process; empty unless it ended by abort(). Other
-// threads do not exist in the copy.
+// Returns the standard error output of body() in a forked process; empty unless it ended by
+// abort(). The child process has a single thread.
 template <class Body>
 std::string abort_message(Body&& body) {
   int ends[2];
   if (pipe(ends) != 0) return {};
   const pid_t pid = fork();
   if (pid == 0) {
-    signal(SIGABRT, SIG_DFL);  // doctest has a handler of its own
+    signal(SIGABRT, SIG_DFL);  // replaces doctest's handler
     dup2(ends[1], STDERR_FILENO);
     close(ends[0]);
     close(ends[1]);

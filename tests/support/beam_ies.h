@@ -1,4 +1,4 @@
-// A photometric file of type A or B.
+// A photometric file (IES) of type A or B.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace troffer::test {
 
-// Type A (3) or B (2); value 1000 + 10 × horizontal + vertical angle.
+// Returns a file of type A (3) or B (2), with the value 1000 + 10 × horizontal + vertical angle.
 inline std::string beam_ies(int type, const std::vector<int>& vertical,
                             const std::vector<int>& horizontal) {
   std::string text = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 " + std::to_string(vertical.size()) +

@@ -1,11 +1,11 @@
-// Pearson's χ² goodness-of-fit test, with pooling of thin bins, and the Šidák correction for
-// asking many such questions at once.
+// Pearson's χ² goodness-of-fit test with pooling of bins of low expectation, and the Šidák
+// correction for many simultaneous tests.
 // References: [1] Press et al., "Numerical Recipes", 3rd ed., §6.2 (incomplete gamma function).
 //   [2] Šidák, "Rectangular Confidence Regions for the Means of Multivariate Normal
 //       Distributions", JASA 62(318), 1967.
 //
-// Use: count n samples into bins (`observed`), integrate n × density over the same bins
-// (`expected`), and
+// Usage: count n samples into bins (`observed`), integrate n × density over the same bins
+// (`expected`), and call
 //     const double significance = sidak(1e-4, number_of_tests);
 //     const auto r = chi_square_test(observed, expected, 1, significance);
 //     CHECK_MESSAGE(r.is_accepted, r.text());
@@ -53,17 +53,18 @@ inline double gamma_q(double a, double x) {
   return std::clamp(std::exp(log_factor) * h, 0.0, 1.0);
 }
 
-// Significance of each of `tests` independent tests, such that all of them together reject a true
-// hypothesis with probability `significance` [2].
+// Returns the significance of each of `tests` independent tests, such that all together reject a
+// true hypothesis with probability `significance` [2].
 inline double sidak(double significance, int tests) {
   return -std::expm1(std::log1p(-significance) / tests);
 }
 
 struct ChiSquareResult {
   double statistic = 0;
-  int degrees_of_freedom = 0;  // 0: too few samples or bins to say anything
-  double p_value = 1;          // probability of a statistic as large where the hypothesis holds
-  double stray = 0;            // samples seen in bins where none can fall
+  int degrees_of_freedom = 0;  // 0: too few samples or bins for a test
+  // probability of a statistic at least this large under the hypothesis
+  double p_value = 1;
+  double stray = 0;  // samples in bins of expectation 0
   bool is_accepted = true;
 
   std::string text() const {
@@ -74,13 +75,14 @@ struct ChiSquareResult {
   }
 };
 
-// Are the counts `observed` drawn from a distribution with means `expected` (same length)?
-// Both are counts, not probabilities. Bins of expectation under `min_expected` are pooled, the
-// smallest first. `dof_reduction`: how many parameters of `expected` were fitted to the counts; 1
-// where both have the same sum by construction, which is checked: sums that differ by more than
-// 1e-3 relative (a density that does not integrate to one) are rejected. Rejects too where more
-// than 3 samples + 1e-5 of all fell into bins of expectation 0: fewer are left to rounding at bin
-// edges. A NaN is rejected.
+// Tests whether the counts `observed` are drawn from a distribution with means `expected` (same
+// length; both are counts, not probabilities). Bins of expectation under `min_expected` are pooled,
+// smallest first.
+//
+// dof_reduction: number of parameters of `expected` that were fitted to the counts. It is 1 if both
+// have the same sum by construction; sums that differ by more than 1e-3 (a density that does not
+// integrate to one) are then rejected. Also rejects more than 3 samples + 1e-5 of all in bins of
+// expectation 0, since rounding at bin edges produces fewer. Rejects NaN.
 inline ChiSquareResult chi_square_test(std::span<const double> observed,
                                        std::span<const double> expected, int dof_reduction,
                                        double significance, double min_expected = 5) {

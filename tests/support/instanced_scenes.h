@@ -1,4 +1,4 @@
-// Scenes that hold instances, and the same with copies in their place.
+// Scenes with instances, and equivalent scenes with copies of the meshes.
 #pragma once
 
 #include <cmath>
@@ -18,8 +18,8 @@ inline void add_instance(Scene& s, uint32_t mesh, const Affine& world_from_mesh,
       make_instance(mesh, world_from_mesh, name, reach_of(m), bounds_in_world(m, world_from_mesh)));
 }
 
-// A dented ball of radius about 1, closed, with smooth normals and (u,v), no two triangles of which
-// lie in one plane; open where `lids` is false.
+// Returns a dented ball of radius about 1 with smooth normals and (u,v). No two of its triangles
+// are coplanar. It is open if has_lids is false.
 inline Mesh dented_ball(uint32_t material, int around = 12, bool has_lids = true) {
   Mesh m;
   m.material = material;
@@ -52,7 +52,8 @@ inline Mesh dented_ball(uint32_t material, int around = 12, bool has_lids = true
   return m;
 }
 
-// Turned, stretched, mirrored, small and large ones, all within [-1.6, 1.6]² x [.1, 1.6].
+// Returns transforms that rotate, stretch, mirror and scale; the instances lie within [-1.6, 1.6]²
+// x [.1, 1.6].
 inline std::vector<Affine> places_in_room() {
   const auto at = [](double x, double y, double z) { return Affine::translate({x, y, z}); };
   return {at(0.9, 0.8, 0.5) * Affine::rotate(0.7, {1, 2, 3}) * Affine::scale({0.3, 0.3, 0.3}),
@@ -62,7 +63,7 @@ inline std::vector<Affine> places_in_room() {
           at(0.1, 0.1, 1.4) * Affine::scale({0.04, 0.04, 0.04})};
 }
 
-// A closed room with a lamp under its ceiling and that mesh in those places.
+// Returns a closed room with a ceiling lamp and instances of the ball at these places.
 inline Scene room_of_instances(const std::vector<Affine>& places, int around = 12) {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f}), red = add_diffuse(s, {0.7f, 0.3f, 0.2f});
@@ -73,7 +74,7 @@ inline Scene room_of_instances(const std::vector<Affine>& places, int around = 1
   return s;
 }
 
-// The same with copies, behind the other meshes, in order.
+// Returns the scene with its instances replaced by copies, after the other meshes, in order.
 inline Scene copied_out(Scene s) {
   for (uint32_t i = 0; i < s.instances.size(); ++i)
     s.meshes.push_back(

@@ -1,5 +1,5 @@
-// Unoccluded irradiance by adaptive quadrature in long double: sums of positive terms only, so that
-// nothing cancels. And receivers at which closed forms have it hard.
+// Reference values of unoccluded irradiance by adaptive quadrature in long double. Sums have
+// positive terms only, so nothing cancels. Also receivers that are difficult for closed forms.
 #pragma once
 
 #include <algorithm>
@@ -18,15 +18,15 @@ namespace troffer::test {
 using Vec3l = Vec3T<long double>;
 
 struct Reference {
-  Vec3l n;             // of the receiver
-  Vec3l m;             // unit, of the source's plane
-  long double height;  // of the receiver over it, absolute
+  Vec3l n;             // normal of the receiver
+  Vec3l m;             // unit normal of the source's plane
+  long double height;  // distance of the receiver from it
 
-  // ∫ over a triangle, corners relative to the receiver, above its horizon.
+  // Integrates over a triangle above the receiver's horizon; corners are relative to the receiver.
   long double triangle(const Vec3l& a, const Vec3l& b, const Vec3l& c, int depth = 0) const {
     const long double ab = length_squared(b - a), bc = length_squared(c - b),
                       ca = length_squared(a - c), longest = std::max({ab, bc, ca});
-    // Of the three corners and the distance from the plane the least distance is bounded below.
+    // Lower bound of the distance, from the corners and the distance to the plane.
     const long double corner =
         std::sqrt(std::min({length_squared(a), length_squared(b), length_squared(c)}));
     const long double nearest = std::max(height, corner - std::sqrt(longest));
@@ -75,7 +75,7 @@ inline double polygon_reference(const std::vector<Vec3d>& polygon, const Vec3d& 
   return double(sum);
 }
 
-// Chords along the horizon: their heights over it are the same everywhere.
+// Integrates over chords parallel to the horizon: their height over it is constant.
 inline double disk_reference(const Vec3d& centre, const Vec3d& m, double radius, const Vec3d& x,
                              const Vec3d& n) {
   const Vec3l plane(m), normal(n), c = Vec3l(centre) - Vec3l(x);
@@ -99,7 +99,8 @@ inline double disk_reference(const Vec3d& centre, const Vec3d& m, double radius,
   return double(height * integrate_adaptive_2d(f, first, last, -1.0L, 1.0L, 1e-7L * rough, 6, 14));
 }
 
-// By cones about the direction of the centre, the part above the horizon in closed form.
+// Integrates over cones about the direction of the centre; the part above the horizon has a closed
+// form.
 inline double sphere_reference(const Vec3d& centre, double radius, const Vec3d& x, const Vec3d& n) {
   const Vec3l c = Vec3l(centre) - Vec3l(x), normal(n);
   const long double d = length(c), half_pi = std::acos(-1.0L) / 2;
@@ -112,7 +113,8 @@ inline double sphere_reference(const Vec3d& centre, double radius, const Vec3d& 
     const long double t = std::acos(-p / q);
     return 2 * (p * t + q * std::sin(t)) * std::sin(a);
   };
-  const long double kink = std::abs(half_pi - std::atan2(sine, cosine));  // the horizon, from c
+  // angle of the horizon from the centre's direction
+  const long double kink = std::abs(half_pi - std::atan2(sine, cosine));
   const auto part = [&](long double from, long double to, bool at_start) {
     const long double size = to - from;
     const auto g = [&](long double u) {
@@ -125,8 +127,9 @@ inline double sphere_reference(const Vec3d& centre, double radius, const Vec3d& 
   return double(part(0, kink, false) + part(kink, last, true));
 }
 
-// A receiver for a flat source about `point` (on it), of size `size` and normal m: from near to
-// far, low over the source's plane, with the source low over its horizon or cut by it.
+// A receiver for a flat source of size `size` and normal m around `point`, which lies on it.
+// Positions range from near to far and low over the source's plane; normals put the source low over
+// the horizon or across it.
 struct HardReceiver {
   Vec3 position, normal;
 };
@@ -148,7 +151,7 @@ inline HardReceiver hard_receiver(Random& r, const Vec3d& point, const Vec3d& m,
   return h;
 }
 
-// Convex, counterclockwise about m, of some size and shape down to slivers.
+// A convex polygon, counterclockwise about m, of random size and shape, down to slivers.
 struct RandomPolygon {
   std::vector<Vec3d> corners;
   Vec3d m;
@@ -162,7 +165,7 @@ inline RandomPolygon random_polygon(Random& r) {
   do {
     m = Vec3d{r.next_double(), r.next_double(), r.next_double()} * 2.0 - Vec3d(1.0);
   } while (!(length_squared(m) > 0.01 && length_squared(m) < 1));
-  const Framed frame(normalize(m));  // exact: rounded corners would not lie in one plane
+  const Framed frame(normalize(m));  // not rounded: rounded corners would not be coplanar
   const int n = 3 + int(4 * r.next_double());
   const double turn = 2 * pi * r.next_double();
   for (int i = 0; i < n; ++i) {

@@ -1,4 +1,4 @@
-// Random scenes of sources of every kind, and random receivers.
+// Random scenes with sources of every kind, and random receivers.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ inline Vec3 random_point(Random& r, float scale) {
 inline Vec3 random_direction(Random& r) {
   return sphere_from_square(r.next_vec2());
 }
-// Spread evenly over orders of magnitude.
+// Returns a log-uniform random size.
 inline float random_size(Random& r, float smallest, float largest) {
   return smallest * std::pow(largest / smallest, r.next_float());
 }
@@ -67,7 +67,7 @@ inline void add_disk_light(Scene& s, uint32_t material, const Vec3& centre, cons
   s.lights.push_back(std::move(e));
 }
 
-// One source of a random kind, place, size, brightness.
+// Adds one source of random kind, position, size and radiance.
 inline void add_random_source(Scene& s, Random& r, float place, float largest) {
   const Vec3 at = random_point(r, place);
   const Vec3 n = random_direction(r);
@@ -109,7 +109,8 @@ struct Receiver {
   Vec3 position, normal;
 };
 
-// Anywhere, far away, within a source's bounds, in its plane, or on it.
+// Returns a receiver at random: anywhere, far away, within a source's bounds, in its plane, or on
+// it.
 inline Receiver random_receiver(const LightPrimitives& lights, Random& r) {
   Receiver out{random_point(r, 10), random_direction(r)};
   const LightPrimitive& p = lights[r.next_u32() % lights.size()];
@@ -122,13 +123,13 @@ inline Receiver random_receiver(const LightPrimitives& lights, Random& r) {
     case 1:
       out.position = inside;
       break;
-    case 2:  // about in the source's plane
+    case 2:  // near the source's plane
       out.position = p.vertex_count > 2
                          ? p.vertex(0) + (p.vertex(1) - p.vertex(0)) * (5 * r.next_float()) +
                                (p.vertex(2) - p.vertex(0)) * (5 * r.next_float() - 2)
                          : inside;
       break;
-    case 3:  // in front of the source, close by, on a surface parallel to it
+    case 3:  // in front of the source, close to it, on a parallel surface
       out.position = p.centroid + Vec3(p.normal) * (p.radius * random_size(r, 1e-4f, 1));
       if (p.vertex_count > 0) out.normal = -Vec3(p.normal);
       break;

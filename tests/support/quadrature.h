@@ -16,7 +16,7 @@ struct GaussLegendre {
   std::vector<T> nodes, weights;
 
   explicit GaussLegendre(int n) : nodes(size_t(n)), weights(size_t(n)) {
-    // Newton on the Legendre polynomial P_n from Chebyshev-like first guesses [1]
+    // Newton iteration on the Legendre polynomial P_n from Chebyshev-like first guesses [1].
     const T pi_t = std::acos(T(-1));
     for (int i = 0; i < n; ++i) {
       T z = std::cos(pi_t * (T(i) + T(0.75)) / (T(n) + T(0.5)));
@@ -62,8 +62,9 @@ T integrate_2d(const F& f, T ax, T bx, T ay, T by, int n) {
                    n);
 }
 
-// As integrate, halving intervals until the rule and its halves agree to `tolerance` (absolute,
-// for the whole) or `depth` halvings are used up: for integrands with kinks and near-singularities.
+// Like integrate, but halves intervals until the rule and its halves agree to `tolerance`
+// (absolute, for the whole) or `depth` halvings are used up. For integrands with kinks and
+// near-singularities.
 template <class T, class F>
 T integrate_adaptive(const F& f, T a, T b, T tolerance, int n = 8, int depth = 30) {
   const auto recurse = [&](const auto& self, T lo, T hi, T whole, T tol, int left) -> T {
@@ -75,7 +76,7 @@ T integrate_adaptive(const F& f, T a, T b, T tolerance, int n = 8, int depth = 3
   return recurse(recurse, a, b, integrate(f, a, b, n), tolerance, depth);
 }
 
-// As integrate_2d, splitting boxes into four until an n × n rule agrees with its quarters.
+// Like integrate_2d, but splits boxes into four until an n × n rule agrees with its quarters.
 template <class T, class F>
 T integrate_adaptive_2d(const F& f, T ax, T bx, T ay, T by, T tolerance, int n = 6,
                         int depth = 12) {

@@ -1,8 +1,8 @@
-// Diffuse rectangles that light one another, solved by another method than the program's: form
-// factors between points and rectangles by Lambert's formula, collocation at the middles of
-// elements, two sizes of elements extrapolated.
+// Reference solution for diffuse rectangles that illuminate one another, by a method that is
+// independent of the program's: form factors from points to rectangles by Lambert's formula,
+// collocation at the centres of elements, and extrapolation over two element sizes.
 //
-// For scenes where no rectangle hides another.
+// No rectangle may hide another.
 // References: [1] Cohen & Wallace, "Radiosity and Realistic Image Synthesis", 1993, ch. 3 and 4.
 #pragma once
 
@@ -16,13 +16,13 @@
 namespace troffer::test {
 
 struct Rectangle {
-  Vec3d corner, u, v;  // the front is where u × v points
+  Vec3d corner, u, v;  // the front is on the side of u × v
   double reflectance = 0;
   double radiance = 0;
 };
 
-// Share of a point's hemisphere (by cosine) that is filled by what of corner + [0,1] u + [0,1] v is
-// above its horizon.
+// Returns the form factor from a point to the part of corner + [0,1] u + [0,1] v that is above its
+// horizon.
 inline double form_factor(const Vec3d& x, const Vec3d& n, const Vec3d& corner, const Vec3d& u,
                           const Vec3d& v) {
   const std::array<Vec3d, 4> corners{corner - x, corner + u - x, corner + u + v - x,
@@ -43,10 +43,10 @@ inline double form_factor(const Vec3d& x, const Vec3d& n, const Vec3d& corner, c
   return std::abs(sum) / (2 * std::acos(-1.0));
 }
 
-// Irradiance at places, after all reflections.
+// Irradiance at points after all reflections.
 class RectangleSolution {
  public:
-  // Elements are no longer than `size`.
+  // Elements are at most `size` long.
   RectangleSolution(const std::vector<Rectangle>& rectangles, double size) {
     for (const Rectangle& r : rectangles) {
       const int nu = std::max(1, int(std::ceil(length(r.u) / size - 1e-9)));
@@ -93,15 +93,15 @@ class RectangleSolution {
   static double factor(const Vec3d& x, const Vec3d& n, const Element& e) {
     const Vec3d away = x - e.corner;
     const double height = dot(away, e.normal);
-    if (height <= 1e-12) return 0;  // it shows no front, or lies in one plane with the point
+    if (height <= 1e-12) return 0;  // back side, or coplanar with the point
     return form_factor(x, n, e.corner, e.u, e.v);
   }
 
   std::vector<Element> elements_;
-  std::vector<double> sent_;  // radiosity, emission and all
+  std::vector<double> sent_;  // radiosity, including emission
 };
 
-// Irradiance from elements of half a size and of a third of it, whose errors fall as its square.
+// Irradiance extrapolated from elements of 1/2 and 1/3 of a size; errors fall as its square.
 class ExtrapolatedSolution {
  public:
   ExtrapolatedSolution(const std::vector<Rectangle>& rectangles, double size)
@@ -109,7 +109,7 @@ class ExtrapolatedSolution {
   double irradiance(const Vec3d& x, const Vec3d& n) const {
     return (9 * fine_.irradiance(x, n) - 4 * coarse_.irradiance(x, n)) / 5;
   }
-  // What the last step of extrapolation has changed.
+  // Returns the change by the last step of extrapolation.
   double doubt(const Vec3d& x, const Vec3d& n) const {
     return std::abs(irradiance(x, n) - fine_.irradiance(x, n));
   }

@@ -22,7 +22,7 @@ inline uint32_t add_diffuse(Scene& s, Rgb reflectance) {
   return add_material(s, m);
 }
 
-// A quadrilateral, front by the order of its corners; returns the mesh's index.
+// Adds a quadrilateral, whose front follows from the order of its corners; returns its mesh index.
 inline uint32_t add_quad(Scene& s, uint32_t material, const std::array<Vec3, 4>& corners) {
   Mesh m;
   m.positions.assign(corners.begin(), corners.end());
@@ -32,7 +32,7 @@ inline uint32_t add_quad(Scene& s, uint32_t material, const std::array<Vec3, 4>&
   return uint32_t(s.meshes.size() - 1);
 }
 
-// An opaque sheet with an alpha mask: what lists of occluders leave to rays.
+// Adds an opaque sheet with an alpha mask. Facet lists leave such occluders to rays.
 inline void add_leaf(Scene& s, const std::array<Vec3, 4>& corners) {
   Material m;
   m.is_alpha_masked = true;
@@ -40,7 +40,7 @@ inline void add_leaf(Scene& s, const std::array<Vec3, 4>& corners) {
   add_quad(s, masked, corners);
 }
 
-// Makes a quad a polygon source.
+// Turns a quad into a polygon source.
 inline void make_light(Scene& s, uint32_t mesh, Rgb radiance, bool is_two_sided = false) {
   Light e;
   e.name = "emitter" + std::to_string(s.lights.size());
@@ -53,7 +53,7 @@ inline void make_light(Scene& s, uint32_t mesh, Rgb radiance, bool is_two_sided 
   s.lights.push_back(std::move(e));
 }
 
-// The inside of the box [lower, upper]: six quads facing inwards (floor, ceiling, four walls).
+// Adds the inside of the box [a, b]: six quads facing inwards (floor, ceiling, four walls).
 inline std::array<uint32_t, 6> add_box_inside(Scene& s, uint32_t material, const Vec3& a,
                                               const Vec3& b) {
   return {add_quad(s, material,
@@ -70,7 +70,7 @@ inline std::array<uint32_t, 6> add_box_inside(Scene& s, uint32_t material, const
                    {Vec3{b.x, a.y, a.z}, {b.x, a.y, b.z}, {b.x, b.y, b.z}, {b.x, b.y, a.z}})};
 }
 
-// A w × w source at height h over the origin, facing down.
+// Adds a w × w source at height h over the origin, facing down.
 inline void add_ceiling_light(Scene& s, float w, float h, Rgb radiance) {
   const uint32_t black = add_diffuse(s, Rgb{0});
   const float r = w / 2;

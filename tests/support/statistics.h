@@ -35,12 +35,12 @@ inline double beta_i(double a, double b, double x) {
   return std::exp(log_front) * h / a;
 }
 
-// Probability that |t| is as large or larger by chance, t having n degrees of freedom.
+// Returns the probability that |t| is at least this large, for n degrees of freedom.
 inline double student_p(double t, double n) {
   return std::isnan(t) ? 0 : beta_i(n / 2, 0.5, n / (n + t * t));
 }
 
-// Mean and spread of values that come one by one [2].
+// Running mean and variance [2].
 class Moments {
  public:
   void add(double value) {
@@ -62,14 +62,15 @@ class Moments {
   double mean_ = 0, squares_ = 0;
 };
 
-// Probability of a mean as far from `expected` as this one by chance. `rounding`: how far values
-// may be off for reasons other than chance, which is forgiven.
+// Returns the probability that a mean is at least this far from `expected` by chance. `rounding`:
+// error of the values for other reasons, which is subtracted first.
 inline double p_of_mean(const Moments& m, double expected, double rounding = 0) {
   const double off = std::max(0.0, std::abs(m.mean() - expected) - rounding);
   if (off == 0) return 1;
   return student_p(off / std::max(m.standard_error(), 1e-300), double(m.count() - 1));
 }
-// Probability of a difference of two means as large by chance (n: the smaller count, less one).
+// Returns the probability of a difference of two means at least this large by chance (n: the
+// smaller count minus one).
 inline double p_of_difference(const Moments& a, const Moments& b, double rounding = 0) {
   const double off = std::max(0.0, std::abs(a.mean() - b.mean()) - rounding);
   if (off == 0) return 1;

@@ -1,4 +1,4 @@
-// Time that this process worked, all of its threads together: a busy machine changes nothing.
+// Processor time of this process, over all its threads; independent of other load on the machine.
 #pragma once
 
 #include <ctime>

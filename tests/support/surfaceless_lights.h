@@ -1,4 +1,4 @@
-// Lights without surface, put into a scene.
+// Functions that add lights without a surface to a scene.
 #pragma once
 
 #include <string>

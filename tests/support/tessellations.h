@@ -1,4 +1,4 @@
-// Flat shapes cut into triangles in many ways, anywhere in space.
+// Flat shapes divided into triangles in many ways, anywhere in space.
 #pragma once
 
 #include <functional>
@@ -12,14 +12,14 @@
 
 namespace troffer::test {
 
-// In the plane, exact; counterclockwise.
+// Triangles in the plane, with exact coordinates; counterclockwise.
 struct Tessellation {
   std::vector<Vec2d> points;
   std::vector<Triangle> triangles;
 };
 
-// The rectangle [0,width] × [0,height] as n × m rectangles of random sizes, each of two triangles
-// with a random diagonal; without those for which is_hole(column, row).
+// Returns the rectangle [0,width] × [0,height] as n × m rectangles of random sizes, each split
+// along a random diagonal. Rectangles for which is_hole(column, row) holds are left out.
 inline Tessellation random_grid(
     Random& r, uint32_t n, uint32_t m, double width, double height,
     const std::function<bool(uint32_t, uint32_t)>& is_hole = [](uint32_t, uint32_t) {
@@ -51,8 +51,8 @@ inline Tessellation random_grid(
   return t;
 }
 
-// A convex polygon cut by random points inside triangles and on edges; least: how close to an end,
-// as a share of the edge.
+// Returns a convex polygon that is split at random points inside triangles and on edges. least:
+// least distance of a point from an edge's end, as a share of the edge.
 inline Tessellation random_splits(Random& r, std::vector<Vec2d> corners, int splits, double least) {
   Tessellation t;
   t.points = std::move(corners);
@@ -87,7 +87,7 @@ inline Tessellation random_splits(Random& r, std::vector<Vec2d> corners, int spl
   return t;
 }
 
-// A rigid motion; `distance`: of the origin, at most.
+// A rigid motion. `distance`: largest distance of the origin.
 struct Place {
   Framed frame{Vec3d{0, 0, 1}};
   Vec3d origin;

@@ -1,11 +1,11 @@
-// Images made in tests.
+// Images for tests.
 #pragma once
 
 #include "scene/texture.h"
 
 namespace troffer::test {
 
-// Grey floats, row by row: value(x, y).
+// Returns a grey float image; value(x, y) gives its texels.
 template <class Value>
 Texture grey_image(int width, int height, const Value& value) {
   Texture t;

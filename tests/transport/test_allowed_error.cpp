@@ -9,8 +9,9 @@ using namespace troffer;
 
 namespace {
 
-// Variance of a picture whose pixels of luminance b err by b n^(-q / 2), each as allowed, if they
-// get this many samples in all: all of them err by so many times what is allowed.
+// Variance of a picture with `samples` samples in all, relative to the variance allowed. Pixels of
+// luminance b err by b n^(-q / 2), and samples are distributed so that all miss their allowed error
+// by the same factor.
 double variance_for(const std::vector<double>& luminances, double q, double samples,
                     const AllowedOfBright& of_bright) {
   double wanted = 0, allowed2 = 0;
@@ -29,7 +30,7 @@ TEST_CASE("what is bright may err by more than what is usual, and by less than i
   CHECK(allowed_error(0.1, 8, 2) == doctest::Approx(0.1 * 4));
   CHECK(allowed_error(0.1, 8, 2, {16, 0.6}) ==
         doctest::Approx(0.1 * std::pow(8, 0.4) * std::pow(2, 0.6)));
-  // At the least so many times less.
+  // the factor that limits the reduction
   CHECK(allowed_error(0.1, 1e6, 1) == doctest::Approx(1e5 / 4));
   CHECK(allowed_error(0.1, 1e9, 1, {16, 0.6}) == doctest::Approx(1e8 / 16));
   CHECK(allowed_error(0.1, 3, 0) == doctest::Approx(0.3 / 4));

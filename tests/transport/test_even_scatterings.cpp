@@ -1,4 +1,4 @@
-// What is made once is what would be made at every hit.
+// EvenScatterings holds the BSDFs that make_bsdf() makes at every hit.
 #include "transport/even_scatterings.h"
 
 #include <doctest/doctest.h>
