@@ -16,8 +16,8 @@ float least_light(float weight, float typical) {
   return weight > 0 ? std::min(share * typical / weight, 1e15f) : 0;
 }
 
-// Costs of certificates in shadow rays: per cluster and source, per hit and source, per mask, per
-// facet in a mask, and per point at which a glossy BRDF or a texture is evaluated.
+// Costs of certificates in shadow rays. In this order: a cluster and source, a hit and source, a
+// mask, a facet in a mask, and a point at which a glossy BRDF or a texture is evaluated.
 constexpr double rays_of_gather = 12, rays_of_pair = 0.15, rays_of_mask = 0.3,
                  rays_of_facet = 1.0 / 12, rays_of_point = 0.3;
 // Random sequences for LightsOfCluster::sequence.

@@ -17,6 +17,7 @@
 
 namespace troffer {
 
+// Accuracy and sample counts of CertifiedDirect; certified_settings() derives them from one error.
 struct CertifiedSettings {
   CertifiedOptions estimator;
   double error = 0.01;     // allowed error, relative to unoccluded light

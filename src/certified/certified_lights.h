@@ -1,11 +1,10 @@
 // Direct light of all area and environment lights at many hits at once, by certified visibility.
 // CertifiedDirect drives it.
 //
-// Hits are grouped into clusters. For each cluster and source the light is exact where a
-// certificate proves the source visible, comes from coverage masks in penumbrae, and from shadow
-// rays where a facet list is incomplete. Matte hits receive reflectance / pi × radiance ×
-// unoccluded projected solid angle × visible share. At other hits the BRDF is integrated over the
-// visible part of the source.
+// Hits are grouped into clusters. For each cluster and source, a certificate gives exact light, a
+// coverage mask answers penumbrae, and shadow rays answer incomplete facet lists. Matte hits
+// receive reflectance / pi × radiance × unoccluded projected solid angle × visible share. At other
+// hits the BRDF is integrated over the visible part of the source.
 //
 // Where lights are many, most are sampled at random instead; so are lights without certificates
 // (drawn_lights.h). Unbiased. Method: docs/certified.md.

@@ -14,7 +14,7 @@ namespace {
 // Error of one sample. N points of an Owen-Sobol sequence over lights half in shadow err by about
 // this times N^-2/3, relative to their light (docs/certified.md, "Many lights").
 constexpr float error_of_one = 0.4f;
-constexpr float most_draws = 256;
+constexpr float most_draws = 256;  // largest number of samples per hit
 // Costs of a certified light in shadow rays: per hit, and per cluster. Profiled
 // (docs/certified.md).
 constexpr float cost_of_hit = 0.15f, cost_of_cluster = 12;
@@ -245,7 +245,7 @@ void Drawing::connect(size_t n) {
 // cluster.
 void Drawing::of_members(std::span<uint32_t> members, const std::vector<float>& estimates,
                          const std::vector<float>& near) {
-  constexpr size_t fewest = 16;
+  constexpr size_t fewest = 16;  // smallest part of a halved cluster
   const bool is_narrow = set_groups(estimates, near);
   if (s.groups.empty()) return;
   if (!is_narrow && members.size() >= 2 * fewest) {

@@ -1,4 +1,5 @@
-// Number of environment light samples for each hit of a cluster.
+// Numbers of environment light samples for the hits of a cluster. cast_far_rays() and draw_left()
+// use them.
 #pragma once
 
 #include <algorithm>
@@ -27,8 +28,8 @@ class FarCounts {
     if (!(of_pixel > 0)) return;
     const double each = std::clamp(of_pixel / double(budget.viewing_rays), least, most_points);
     usual_ = power_near(each);
-    // Up to `most_fewer` times fewer samples, and `least_most_few` per hit, where at least the
-    // share `much` arrives.
+    // At most `most_fewer` times fewer samples, and `least_most_few` per hit, once the share `much`
+    // arrives.
     constexpr double most_fewer = 4, least_most_few = 8, much = 0.4;
     const double fewer = std::clamp(most_fewer * open / much, 1.0, most_fewer);
     const double most_few = least_most_few * sqr(most_fewer / fewer);

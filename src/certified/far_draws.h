@@ -17,6 +17,7 @@ namespace troffer {
 // Returns the scene's largest facets, which may hide much of an environment light.
 FarScene far_scene(const Occluders& occluders);
 
+// Inputs of draw_left(). All referenced objects must outlive it.
 struct FarDraws {
   const PreparedScene& scene;
   const LobeCompetition& competition;

@@ -9,6 +9,7 @@ namespace troffer {
 namespace {
 
 constexpr uint64_t purpose_pilot = 0x6661'7271;
+// Pilot rays of a batch to the sky; suns get half as many triples.
 constexpr size_t pilots = 64;
 // Where no pilot ray arrives in a scene that seems shut out: one ray for this many hits, at most
 // most_pilots.
@@ -95,7 +96,7 @@ class Pilots {
 
   // True if the occluded rays met more than half as many different facets as there are rays.
   bool is_clutter() {
-    constexpr size_t fewest = 3;
+    constexpr size_t fewest = 3;  // fewer occluded rays do not suffice for a decision
     if (hidden_.size() < fewest) return false;
     std::vector<Hit> hits(hidden_.size());
     d_.scene.tracer.closest(hidden_, hits, Coherence::coherent, Meeting::no_panes);
@@ -177,7 +178,7 @@ class Pilots {
   const FarPointDraws& d_;
   std::vector<Ray> rays_of_, hidden_;
   std::vector<float> weights_;
-  std::vector<int32_t> ray_of_;  // per look at the sky: its ray, or -1
+  std::vector<int32_t> ray_of_;  // per pilot sample of the sky: its ray, or -1
   std::vector<uint8_t> is_occluded_, is_shown_;
   struct Sums {
     double sky = 0, suns = 0;  // unoccluded light, summed over receivers

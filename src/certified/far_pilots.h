@@ -36,6 +36,7 @@ inline Ray far_ray(const ShadowReceiver& r, const Vec3& wi) {
   return ray;
 }
 
+// The batch of hits, and the environment lights and occluders that rays from it may meet.
 struct FarPointDraws {
   const PreparedScene& scene;
   const LobeCompetition& competition;

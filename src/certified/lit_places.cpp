@@ -13,6 +13,8 @@ namespace troffer {
 
 namespace {
 
+// Random walks per batch and in total, and the segments of each: up to 32 768 rays towards
+// environment light.
 constexpr size_t walks_at_a_time = 512, most_walks = 8192;
 constexpr int most_segments = 4;
 

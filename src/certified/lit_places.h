@@ -1,4 +1,6 @@
 // Test of whether environment light reaches the surfaces that a scene's other lights shine on.
+// CertifiedLights uses it to recognize rooms that are closed, where certificates of sky patches
+// would be wasted.
 #pragma once
 
 #include "certified/far_points.h"

@@ -75,6 +75,8 @@ struct GlossyLanes {
   }
 };
 
+// Evaluates the integrand for one cluster at a time. Set hits(), sources(), behind_panes() and
+// portals() before each cluster. One object per thread, because it holds scratch memory.
 class SourceIntegrand final : public ShadowIntegrand {
  public:
   // points: number of points per source at which gloss and textures are evaluated.

@@ -61,7 +61,7 @@ DirectionTable::DirectionTable(SphereMap map, int width, int height,
   };
   for (int j = 0; j <= height + 1; ++j)
     for (int i = 0; i <= width + 1; ++i) {
-      // A node on the square's edge lies half way between texels on both sides of it.
+      // A node on the square's edge lies midway between texels on both sides of it.
       const int x0 = i == 0 ? -1 : i - 1, x1 = i == 0 ? 0 : i == width + 1 ? width : i - 1;
       const int y0 = j == 0 ? -1 : j - 1, y1 = j == 0 ? 0 : j == height + 1 ? height : j - 1;
       const int xa = i == width + 1 ? width - 1 : x0, ya = j == height + 1 ? height - 1 : y0;

@@ -24,8 +24,8 @@ constexpr double fit_error = 1e-4, fit_error_of_all = 1e-5;
 // this share of all light. The coarse lattice has 178 samples (docs/certified.md, "Masks"). Smooth
 // radiance errs much less.
 constexpr double table_error = 1e-3, samples_of_mask = 178;
-// On the faces beside a portal's, the strip below this height over the portal's plane is a patch of
-// its own, because rays meet it very far away.
+// On the faces beside a portal's, the strip up to this height over the portal's plane is a patch of
+// its own. Rays meet the plane very far away there.
 constexpr double near_plane = 0.125;
 
 // Nodes of the fit: Chebyshev nodes in [0,1].

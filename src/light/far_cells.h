@@ -2,8 +2,8 @@
 // (certified/certified_lights.h). They lie on the faces of a cube so large that it looks the same
 // from everywhere in the scene. A sun is a disk at that distance.
 //
-// For certified visibility a patch is an ordinary quadrilateral. Seen from two places of the scene,
-// a point of the cube differs in direction by at most 2^-25, less than the rounding margin of
+// For certified visibility a patch is an ordinary quadrilateral. From two places of the scene, a
+// point of the cube differs in direction by at most 2^-25. That is less than the rounding margin of
 // certificates (docs/certified.md, "Lights at infinity"). Patches are cut where the radiance is not
 // smooth: at the horizon, around the sun, and at bright parts of an image.
 #pragma once

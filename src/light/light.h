@@ -1,6 +1,6 @@
-// What every method may ask of a light, whatever its kind. The kinds are a closed set
-// (scene/light.h). Each kind has a file here (surface_light.h, point_light.h and so on) that
-// implements all queries; light.cpp selects it by Light::kind.
+// Queries that all kinds of lights answer. The kinds are a closed set (scene/light.h). Each kind
+// has a file here (surface_light.h, point_light.h and so on) that implements all queries; light.cpp
+// selects it by Light::kind.
 //
 //   bound        LightPrimitive: box, cone of directions, power (for LightPrimitives)
 //   sample       a direction towards a receiver, its distance, radiance and density

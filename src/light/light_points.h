@@ -1,5 +1,6 @@
 // Many sample points on one piece of a light for one receiver, as plain arrays. The points are
-// those of light_sample.h, but values common to all points are computed once.
+// those of light_sample.h, but values common to all points are computed once. They serve callers
+// that cast several rays per light (shadow/direct_rays.h, transport/source_sampler.h).
 #pragma once
 
 #include <cstddef>

@@ -36,8 +36,8 @@ inline Vec3d centroid(std::span<const Vec3> polygon, const Vec3d& normal) {
 }
 
 // Height in metres over the plane of a flat source through y, up to which a receiver x counts as in
-// the plane and gets no light. Rounding puts hits on a source on either side of its plane, where
-// the front could light the back. Rays are offset farther from surfaces than this.
+// the plane and gets no light. Rounding can put a hit on the source's back onto its front side,
+// where the source would fill its hemisphere. Rays are offset farther from surfaces than this.
 inline double plane_rounding(const Vec3d& x, const Vec3d& y) {
   double sum = 0;
   for (const Vec3d& p : {x, y}) sum += std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});

@@ -1,5 +1,6 @@
-// Light of one point of a rectangle at many receivers, vectorized over receivers. It serves the
-// choice between lights; light_sample.h computes what arrives.
+// Light of one point of a rectangle at many receivers, vectorized over receivers. Resampled direct
+// light uses it to choose between lights (transport/resampled_direct.h). light_sample.h computes
+// the light that arrives.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // Photometric webs: intensity by direction, total flux, and the radiance of the luminous opening
-// that emits it. Intensities in cd per unit of the light's radiance factor, areas in m².
+// that emits it. Intensities in W/sr or cd, areas in m².
 #pragma once
 
 #include <array>
