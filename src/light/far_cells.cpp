@@ -14,15 +14,12 @@ namespace troffer {
 
 namespace {
 
-// Half the edge length of the cube, in scene radii. From 256 radii away, directions to it err by
-// 2^-18.
+// Half the cube's edge length in scene radii. From 256 radii away, directions err by 2^-18.
 constexpr double cube_in_radii = 0x1p26;
-// Allowed error of the polynomials, relative to the patch's mean radiance, or relative to the
-// light's integral over all directions. One of the two must hold.
+// Allowed error of a fit, relative to the patch's mean radiance, or to the light's integral.
 constexpr double fit_error = 1e-4, fit_error_of_all = 1e-5;
-// A patch is halved until the samples of a coarse mask, if placed at random, would err by less than
-// this share of all light. The coarse lattice has 178 samples (docs/certified.md, "Masks"). Smooth
-// radiance errs much less.
+// A patch is halved until randomly placed samples of a coarse mask (178 of them) would err by less
+// than this share of all light.
 constexpr double table_error = 1e-3, samples_of_mask = 178;
 // On the faces beside a portal's, the strip up to this height over the portal's plane is a patch of
 // its own. Rays meet the plane very far away there.
@@ -35,8 +32,7 @@ constexpr double chebyshev_nodes[4] = {
 // Positions where the fit is checked. They avoid the edges, because the ground may begin there.
 constexpr double checks[6] = {1e-4, 0.13, 0.31, 0.5, 0.77, 1 - 1e-4};
 
-// A face of the cube in units of its distance: directions axis + a across + b up, with a and b in
-// [-1,1].
+// A face of the cube: directions axis + a across + b up, with a and b in [-1,1].
 struct Face {
   Vec3d axis, across, up;
 };
@@ -109,8 +105,7 @@ class Cutter {
       }
   }
 
-  // Adds the patches of a uniform light that may be seen through its portal. Their edges lie in the
-  // portal's plane.
+  // Adds a uniform light's patches that its portal may show. Edges lie in the portal's plane.
   void cut_before_portal() {
     const auto [x, y, z] = piece_.portal->axes();
     add_even({z, x, y}, -1, 1, -1, 1);
@@ -182,8 +177,7 @@ class Cutter {
       texels = map->projection == SphereMap::lat_long ? map->width / 4 : map->width / 2;
     auto table = std::make_unique<FarTable>();
     table->size = int(std::bit_ceil(unsigned(std::clamp(texels, 128, 512))));
-    // An image is bilinear between texels, so a bright texel is a narrow peak that few lookups
-    // would miss.
+    // A bright texel is a narrow peak, which too few bilinear lookups would miss.
     each = std::clamp((texels + table->size - 1) / table->size,
                       image() == nullptr  ? 1
                       : table->size > 256 ? 2
@@ -237,8 +231,7 @@ class Cutter {
     bool is_even = true;
   };
 
-  // Sets the patch's mean and unevenness from the table, and returns the spread. Precondition: the
-  // fit is set.
+  // Sets the patch's mean and unevenness, and returns the spread. Precondition: the fit is set.
   Spread look_at_table(const Face& f, const Square& s, FarCell& cell) const {
     Spread spread;
     double r = 0, g = 0, b = 0, squares = 0, from_fit = 0, weights = 0;
