@@ -1,4 +1,5 @@
-// One cluster of hits at a time (certified_lights.h): certificates, or draws where these take less.
+// The member functions of CertifiedLights that light one cluster of hits: by certificates, or by
+// sampled lights where those cost less.
 #include <algorithm>
 
 #include "certified/certified_lights.h"
@@ -8,26 +9,25 @@ namespace troffer {
 
 namespace {
 
-// Light at a hit of this weight that makes a hundredth of what is usual in the picture: nobody sees
-// what less of it errs by.
+// Luminance at a hit of this weight that contributes 1 % of the picture's typical luminance. Errors
+// of weaker light are invisible.
 float least_light(float weight, float typical) {
   constexpr float share = 0.01f;
   return weight > 0 ? std::min(share * typical / weight, 1e15f) : 0;
 }
 
-// What certificates take, in rays: once for a cluster and a source, for a pair of a hit and a
-// source, for a mask, for each facet in it, and for each point of a source at which gloss or a
-// texture is looked at.
+// Costs of certificates in shadow rays. In this order: a cluster and source, a hit and source, a
+// mask, a facet in a mask, and a point at which a glossy BRDF or a texture is evaluated.
 constexpr double rays_of_gather = 12, rays_of_pair = 0.15, rays_of_mask = 0.3,
                  rays_of_facet = 1.0 / 12, rays_of_point = 0.3;
-// LightsOfCluster::sequence
+// Random sequences for LightsOfCluster::sequence.
 constexpr uint64_t matte_sequence = 0x6d61'7474, reduced_sequence = 0x7468'7269;
 
 struct Counted {
   CertifiedCounters counters;
   uint64_t rays = 0;
 };
-// Masks and rays between two looks at what is counted: the same whatever was counted before.
+// Cost of the masks and rays counted from `a` to `b`, in shadow rays.
 double rays_between(const Counted& a, const Counted& b) {
   return double(b.rays - a.rays) + rays_of_mask * double(b.counters.masks - a.counters.masks) +
          rays_of_facet * double(b.counters.mask_facets - a.counters.mask_facets) +
@@ -63,7 +63,7 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
     cast_far_rays(far_draws(s), members, s.far, seen, budget, s.far_rays, out, counters);
 }
 
-// Light of the lights that are drawn.
+// Adds the light of the sampled groups.
 void CertifiedLights::draw(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                            RadianceBatch& out, Counters& counters) const {
   s.drawing.assign(members.begin(), members.end());
@@ -71,8 +71,8 @@ void CertifiedLights::draw(std::span<const uint32_t> members, CertifiedLightsScr
               counters);
 }
 
-// Light of those that are certified and, with has_far, of what is far away. What each of `members`
-// has got of it is returned, if there is any: luminance × sr.
+// Adds the light of the certified groups and, with has_far, of all sky patches. Returns the light
+// received per member, luminance × sr; empty if there are no requests.
 std::span<const float> CertifiedLights::certify(std::span<const uint32_t> members, bool has_far,
                                                 CertifiedLightsScratch& s, RadianceBatch& out,
                                                 Counters& counters) const {
@@ -103,7 +103,7 @@ std::span<const float> CertifiedLights::certify(std::span<const uint32_t> member
   return s.cluster.memory.light;
 }
 
-// How many points are drawn from each of `members`, and by which numbers.
+// Sets the number of light samples per hit, and their random sequence.
 void CertifiedLights::set_draws(std::span<const uint32_t> members, uint32_t effort_divisor,
                                 CertifiedLightsScratch& s) const {
   const bool is_matte =
@@ -117,8 +117,9 @@ void CertifiedLights::set_draws(std::span<const uint32_t> members, uint32_t effo
     s.chosen.sequence = matte_sequence;
 }
 
-// A few hits are certified, and the others too if that took no more than draws do. What a few have
-// met decides about others alone, whose random numbers are their own.
+// Certifies up to four hits and measures the cost; certifies the others too if that costs less than
+// sampling. Unbiased: the probed hits decide only about the others, whose random numbers are
+// independent.
 void CertifiedLights::certify_or_draw(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                                       RadianceBatch& out, Counters& counters) const {
   constexpr size_t few = 4;

@@ -10,23 +10,23 @@ namespace troffer {
 
 namespace {
 
-// From this error on the coarse lattice does, whose own error is up to .005 (docs/certified.md);
-// specks and wires that fall between its samples would show below.
+// Allowed error from which the coarse lattice is used. Its own error is up to .005
+// (docs/certified.md); smaller errors need a lattice that also resolves specks and wires.
 constexpr double coarse_from = 0.02;
-// Where nothing but a mean over many hits counts.
+// Allowed error where only a mean over many hits counts (SampleRequest::is_coarse).
 constexpr double rough_error = 0.3;
 
 }  // namespace
 
 CertifiedSettings certified_settings(double error, size_t lights, int viewing_rays) {
-  // Half in shadow, the error of n Owen-Sobol rays is near 1/2 n^-3/4. Those of equal, independent
-  // sources average out. Powers of two are stratified best.
+  // Half in shadow, n Owen-Sobol rays err by about 1/2 n^-3/4, so n = (1 / 4e²)^(2/3). Errors of
+  // equal, independent sources average out. Powers of two are stratified best.
   const auto rays_for = [](double e) {
     const double n = std::clamp(std::pow(0.25 / (e * e), 2.0 / 3), 16.0, 256.0);
     return int(std::bit_floor(unsigned(n)));
   };
-  // What so many points of a source leave of gloss is less than that, and less than what pixels of
-  // few viewing rays leave of edges.
+  // With this many points, the error of glossy light stays below `e`, and below what edges
+  // contribute in pixels of few viewing rays.
   const auto points_for = [](double e) {
     return int(std::bit_floor(unsigned(std::clamp(3.2 / e, 8.0, 32.0))));
   };
@@ -34,7 +34,7 @@ CertifiedSettings certified_settings(double error, size_t lights, int viewing_ra
   s.gloss_samples = points_for(error);
   s.shadow_rays = rays_for(error * std::sqrt(double(std::max<size_t>(lights, 1))));
   s.estimator.lattice = error >= coarse_from ? coarse_lattice : fine_lattice;
-  // The errors of a pixel's viewing rays are independent.
+  // Errors of a pixel's viewing rays are independent.
   s.estimator.mask_error = float(error * std::sqrt(std::clamp(viewing_rays, 1, 4)));
   s.error = error;
   s.viewing_rays = viewing_rays;
@@ -113,7 +113,7 @@ CertifiedOptions CertifiedDirect::options_for(const SampleRequest& request) cons
   return certified_settings(error, 1, settings_.viewing_rays).estimator;
 }
 
-// Light straight from all sources: by certificates later, or by rays.
+// Queues a hit for certificates, and casts shadow rays to the other lights.
 void CertifiedDirect::queue_hit(const WaveHits& wave, size_t i, Scratch& s, RadianceBatch& out,
                                 Counters& counters) const {
   const Walk& walk = wave.walks[i];
@@ -164,7 +164,7 @@ float CertifiedDirect::weight_of_miss(const Walk& walk, uint32_t primitive) cons
   return weight_against(*source, walk);
 }
 
-// Of emission that a walk has run into, against points on the source chosen at the vertex before.
+// MIS weight of emission that a walk hit, against sampling the source from the previous vertex.
 float CertifiedDirect::weight_of(const Walk& walk, const Vertex& v) const {
   const bool is_sampled = walk.last_both_sides || !lights_.has(uint32_t(v.surface.light));
   if (is_sampled) return sampler_.emission_weight(walk, v, uint32_t(settings_.shadow_rays));

@@ -1,12 +1,12 @@
-// Direct light by certified visibility: the structure of the method of 1992 with shadow flags that
+// Direct light by certified visibility: the structure of the 1992 method, with shadow flags that
 // are proved.
 //
-// Hits of a batch are treated together for every source (certified_lights.h), without rays but
-// where no list of facets is complete; lights at infinity are sources among others. A fixed number
-// of shadow rays (source_sampler.h) does points, spots and distant lights, and rough surfaces that
-// transmit.
-// Unbiased. Hits are clustered, and found occluders are remembered within a batch: the noise of the
-// result, though not its mean, depends on what is in the batch. References: docs/certified.md.
+// Hits of a batch are lit together (certified_lights.h), without shadow rays except where a facet
+// list is incomplete. Environment lights are sources like others. Point, spot and distant lights,
+// and rough transmitting surfaces, get a fixed number of shadow rays (source_sampler.h).
+//
+// Unbiased. Hits are clustered and found occluders are reused within a batch, so the noise of a
+// result depends on the batch; its mean does not. References: docs/certified.md.
 #pragma once
 
 #include <memory>
@@ -17,24 +17,25 @@
 
 namespace troffer {
 
+// Accuracy and sample counts of CertifiedDirect; certified_settings() derives them from one error.
 struct CertifiedSettings {
   CertifiedOptions estimator;
-  double error = 0.01;     // allowed, relative to unoccluded light
-  int shadow_rays = 64;    // per source and viewing ray where there are no certificates
-  int gloss_samples = 32;  // points of a source at which gloss and textures are looked at
-  int viewing_rays = 1;    // of a pixel, which share what is drawn
-  int draws = 0;           // points of near lights from each hit, in place of certificates; 0: none
-  int matte_times = 1;     // … so many times as many where no hit of a cluster is glossy
+  double error = 0.01;     // allowed error, relative to unoccluded light
+  int shadow_rays = 64;    // per source and viewing ray, where there are no certificates
+  int gloss_samples = 32;  // points per source at which gloss and textures are evaluated
+  int viewing_rays = 1;    // per pixel; they share the light samples
+  int draws = 0;  // light samples per hit that may replace certificates of few lights; 0: none
+  int matte_times = 1;  // factor on `draws` for clusters without glossy hits
 };
 
-// Settings for an allowed standard error of a viewing ray's direct light, relative to what its
-// sources would send unoccluded, in a scene of so many lights. Points drawn from many lights err by
-// so much for all viewing rays of a pixel together.
+// Returns settings for a standard error of a viewing ray's direct light, relative to the unoccluded
+// light of all sources. `lights`: number of lights in the scene. For sampled lights, the error is
+// that of all viewing rays of a pixel together.
 CertifiedSettings certified_settings(double error, size_t lights, int viewing_rays = 1);
 
 class CertifiedDirect final : public DirectLight {
  public:
-  // occluders: of the scene.
+  // occluders: those of `scene`, which must outlive this object.
   CertifiedDirect(const PreparedScene& scene, std::shared_ptr<const Occluders> occluders,
                   const CertifiedSettings& settings);
 
@@ -62,7 +63,7 @@ class CertifiedDirect final : public DirectLight {
   CertifiedSettings settings_;
   CertifiedLights lights_;
   SourceSampler sampler_;
-  // Lights that get rays of their own: on opaque surfaces, and where light goes through.
+  // Lights that get shadow rays of their own: at opaque hits, and at transmitting ones.
   std::vector<uint32_t> at_opaque_, at_transmitting_;
 };
 

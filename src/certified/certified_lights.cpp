@@ -13,15 +13,16 @@ namespace troffer {
 
 namespace {
 
-// Lights of more pieces, once those in one plane are merged, are left to rays: each piece would
-// be a source of its own.
+// Largest number of flat pieces of a mesh light, after coplanar ones are merged. Each piece is one
+// source, so larger meshes are sampled instead.
 constexpr uint32_t most_pieces = 256;
-// Hits on a curved surface are certified together within this share of the scene's diagonal; the
-// plane about a portal goes on for as many of them.
+// Largest extent of a cluster on a curved surface, relative to the scene's diagonal.
 constexpr float reach_of_diagonal = 0.1f;
+// Extent of a portal's frame beyond its sides, in scene diagonals.
 constexpr double reach_of_frame = 16;
-// Cells of lights at infinity stand at a finite distance: receivers within so many radii of the
-// scene see them in their true directions. Others, such as measuring points, get rays.
+// Sky patches lie at a finite distance. Receivers within this many scene radii of the centre see
+// them in their true directions to 2^-18 (docs/certified.md, "Lights at infinity"). Farther
+// receivers, such as measuring points, use rays.
 constexpr float reach_of_far_cells = 256;
 
 }  // namespace
@@ -47,7 +48,7 @@ CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget
 
 namespace {
 
-// Whether a point in the source's plane belongs to it.
+// True if a point in the source's plane lies within the source. Disks always return true.
 bool covers(const FlatSource& s, const Vec3& point) {
   if (s.is_disk) return true;
   const Vec3d d = Vec3d(point) - s.plane.origin, n = cross(s.plane.u, s.plane.v);
@@ -70,7 +71,7 @@ const CertifiedSource* CertifiedLights::source_of(uint32_t primitive, bool is_ba
                                                   const Vec3& point) const {
   int32_t i = (is_back ? source_of_back_ : source_of_front_)[primitive];
   if (i < 0) return nullptr;
-  // of a polygon in several parts
+  // A polygon light may have several parts that share a primitive.
   while (before_[size_t(i)] >= 0 && !covers(sources_[size_t(i)].flat, point))
     i = before_[size_t(i)];
   return &sources_[size_t(i)];
@@ -92,7 +93,7 @@ bool CertifiedLights::add_light(const PreparedScene& scene, uint32_t light) {
   if (merge_sources(scene.primitives, light, merged)) return add_flat_light(scene, light, merged);
   if (pieces.last - pieces.first > most_pieces) return false;
   std::vector<CertifiedSource> added;
-  std::vector<uint32_t> ends;  // of each piece's sources in `added`
+  std::vector<uint32_t> ends;  // per piece: end of its sources in `added`
   for (uint32_t p = pieces.first; p < pieces.last; ++p) {
     const LightPrimitive& piece = scene.primitives[p];
     CertifiedSource source;
@@ -126,7 +127,7 @@ bool CertifiedLights::add_light(const PreparedScene& scene, uint32_t light) {
   return true;
 }
 
-// Of one radiance.
+// Adds the flat pieces of a light of uniform radiance.
 bool CertifiedLights::add_flat_light(const PreparedScene& scene, uint32_t light,
                                      const std::vector<SourcePiece>& pieces) {
   if (pieces.size() > most_pieces) return false;
@@ -144,7 +145,7 @@ bool CertifiedLights::add_flat_light(const PreparedScene& scene, uint32_t light,
       source.stream = hash_of(sources_.size(), 2u);  // parts of a polygon share a primitive
       add_source(source, piece.primitives);
     }
-    // … and are one group
+    // All parts of one polygon form one group.
     if (i + 1 < pieces.size() && pieces[i + 1].primitives == piece.primitives) continue;
     groups_.add(scene.primitives, piece.primitives, first, uint32_t(sources_.size()));
     first = uint32_t(sources_.size());
@@ -201,7 +202,8 @@ const CertifiedSource* CertifiedLights::source_towards(uint32_t primitive,
   return nullptr;
 }
 
-// What has no certificates but a surface: a few neighbours at a time, where triangles are many.
+// Groups the primitives of lights that have a surface but no certificates. Above most_groups
+// triangles, neighbouring ones share a group.
 void CertifiedLights::add_drawn_lights(const PreparedScene& scene) {
   constexpr uint32_t most_groups = 8192;
   const auto lights = uint32_t(scene.scene.lights.size());
@@ -249,7 +251,7 @@ bool CertifiedLights::find_closed_off(CertifiedLightsScratch& s) const {
   return are_all;
 }
 
-// All far sources are dark.
+// Counts all sky patches as proved dark for these hits.
 void CertifiedLights::count_closed_off(std::span<const uint32_t> members,
                                        const CertifiedLightsScratch& s, RadianceBatch& out,
                                        Counters& counters) const {
@@ -268,7 +270,8 @@ bool CertifiedLights::may_be_proved_far(std::span<const uint32_t> members,
 
 namespace {
 
-// … so that sky and suns err by so much of what arrives.
+// Rays per hit so that the sky's light and the suns' light each err by `error`, relative to what
+// arrives.
 double rays_of_hit(const FarShare& share, bool has_suns, double error) {
   const double of_suns = std::sqrt(share.spread_of_sun) / (share.open * error);
   return rays_for_error(share.open_sky, error) + (has_suns ? std::pow(of_suns, 4.0 / 3) : 0.0);
@@ -276,15 +279,17 @@ double rays_of_hit(const FarShare& share, bool has_suns, double error) {
 
 }  // namespace
 
-// Whether rays to far sources would cost more than a look at their cells. Points of `measure` can
-// wait.
+// True if proofs for sky patches are expected to cost less than rays to them. Always true for
+// measuring points unless the scene seems closed: their proofs may take longer.
 bool CertifiedLights::is_proof_of_far_worth(std::span<const uint32_t> members,
                                             const CertifiedLightsScratch& s,
                                             const RadianceBatch& out) const {
-  constexpr double cost_of_look = 4000;      // in rays
-  constexpr double cost_of_gloss = 4;        // … of a cell that a glossy hit may see, more
-  constexpr double share_of_further = 0.25;  // a further viewing ray of a pixel gets fewer
-  // … and of a cell before a hit, in rays as they are estimated; of what is that open.
+  constexpr double cost_of_look = 4000;  // in rays: shaft and facet lists of all patches
+  constexpr double cost_of_gloss = 4;    // in rays per sky patch, extra for a glossy hit
+  // rays of a pixel's further viewing rays, relative to the first ones
+  constexpr double share_of_further = 0.25;
+  // Above the open share `open_enough`, proofs need more than cost_of_mask rays per sky patch to
+  // pay.
   constexpr double cost_of_mask = 40, open_enough = 0.25;
   if (s.far.seems_closed) return false;
   if (!s.request.is_picture) return true;

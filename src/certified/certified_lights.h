@@ -1,11 +1,13 @@
-// Light straight from sources by certified visibility: many hits at a stroke, exact where nothing
-// hides a source, by coverage masks in penumbrae, by rays where lists of occluders are not complete
-// (docs/certified.md).
+// Direct light of all area and environment lights at many hits at once, by certified visibility.
+// CertifiedDirect drives it.
 //
-// Hits are clustered; for each cluster and source, reflectance / pi × radiance × unoccluded
-// projected solid angle × visible share is added at matte hits, and an integral over the visible
-// part elsewhere. Of many lights most are drawn at random instead, and so are those without
-// certificates at matte hits (drawn_lights.h). Unbiased.
+// Hits are grouped into clusters. For each cluster and source, a certificate gives exact light, a
+// coverage mask answers penumbrae, and shadow rays answer incomplete facet lists. Matte hits
+// receive reflectance / pi × radiance × unoccluded projected solid angle × visible share. At other
+// hits the BRDF is integrated over the visible part of the source.
+//
+// Where lights are many, most are sampled at random instead; so are lights without certificates
+// (drawn_lights.h). Unbiased. Method: docs/certified.md.
 #pragma once
 
 #include <cstdint>
@@ -25,54 +27,58 @@
 
 namespace troffer {
 
-// Memory of one thread.
+// Scratch memory of one thread.
 struct CertifiedLightsScratch {
   CertifiedLightsScratch(const CertifiedOptions& o, ShadowWorld w, SourceIntegrand i)
       : options(o), world(std::move(w)), integrand(std::move(i)) {}
   WaitingHits hits;
-  SampleRequest request;  // of the batch
+  SampleRequest request;  // of the current batch
   CertifiedOptions options;
   ShadowWorld world;
   SourceIntegrand integrand;
-  std::vector<FoundFacets> found;  // per source: what this batch has learnt
+  std::vector<FoundFacets> found;  // per source: facets found during this batch
   ReceiverClusters clusters;
   CertifiedCluster cluster;
   LightsOfCluster chosen;
-  std::vector<uint32_t> requested;    // sources of the cluster's requests
-  std::vector<uint32_t> drawing;      // hits of the cluster
-  std::vector<uint32_t> first, rest;  // … that are certified to see what that takes, and others
+  std::vector<uint32_t> requested;    // source index of each request of the cluster
+  std::vector<uint32_t> drawing;      // hits of the cluster, for draw()
+  std::vector<uint32_t> first, rest;  // hits certified as a cost probe, and the remaining hits
   DrawnLightsScratch drawn;
   FarRays far_rays;
-  FarShare far;                        // of the light of far sources, what arrives at the hits
-  std::vector<uint8_t> is_closed_off;  // per hit, surely: from all that is far away
+  FarShare far;  // share of environment light that arrives at the batch's hits
+  std::vector<uint8_t> is_closed_off;  // per hit; 1: provably enclosed by an opaque shell
 };
 
+// Immutable after set_occluders(); any number of threads may call illuminate(), each with a scratch
+// of its own.
 class CertifiedLights {
  public:
-  // gloss_points: of each source at which gloss and textures are looked at.
+  // gloss_points: points per source at which glossy BRDFs and textured radiance are evaluated.
   CertifiedLights(const PreparedScene& scene, const DrawingBudget& budget, uint32_t gloss_points);
   CertifiedLights(const CertifiedLights&) = delete;
   CertifiedLights& operator=(const CertifiedLights&) = delete;
 
-  // The light is dealt with here, whole, by certificates or because it is drawn. The latter are
-  // meshes of too many pieces that lie in no common plane, or have no certificate shape (light.h).
+  // True if this class computes all light of `light`, by certificates or by sampling.
   bool has(uint32_t light) const { return has_light_[light] || is_drawn_[light]; }
+  // True if the light is always sampled: a mesh of too many pieces that lie in no common plane, or
+  // a light without a certificate shape (light.h).
   bool is_drawn(uint32_t light) const { return is_drawn_[light]; }
   bool is_empty() const { return groups_.size() == 0 && far_.cells->all().empty(); }
   const LobeCompetition& competition() const { return competition_; }
-  // The source that a point on a piece of a light belongs to, seen from its front or its back;
-  // null if none.
+  // Returns the source that covers `point` on a light primitive, seen from its front or its back;
+  // null if none does.
   const CertifiedSource* source_of(uint32_t primitive, bool is_back, const Vec3& point) const;
-  // The one of a light at infinity in a direction; null if none.
+  // Returns the sky patch of an environment light in `direction`; null if there is none.
   const CertifiedSource* source_towards(uint32_t primitive, const Vec3& direction) const;
 
-  // Before the first hits, where there are lights at infinity; they must stay.
+  // Prepares environment lights. Call before the first hits; `occluders` must outlive this object.
+  // Does nothing if the scene has no environment lights.
   void set_occluders(const Occluders& occluders);
 
-  // What a batch learns is forgotten at its beginning, so that it does not matter what a thread did
-  // before.
+  // Starts a batch: discards the facets found in the last one, so that results do not depend on
+  // what a thread did before.
   void forget(CertifiedLightsScratch& s) const { s.found.assign(sources_.size(), {}); }
-  // Adds the light of all sources at s.hits to `out`, and empties s.hits.
+  // Adds the light of all sources at s.hits to `out`, then empties s.hits.
   void illuminate(CertifiedLightsScratch& s, RadianceBatch& out, Counters& counters) const;
 
  private:
@@ -87,7 +93,7 @@ class CertifiedLights {
   FarPointDraws far_draws(const CertifiedLightsScratch& s) const {
     return {scene_, competition_, s.hits, far_.points, *far_.occluders};
   }
-  // False: some hit may get light from far away.
+  // Sets s.is_closed_off. Returns true if no hit can receive environment light.
   bool find_closed_off(CertifiedLightsScratch& s) const;
   void count_closed_off(std::span<const uint32_t> members, const CertifiedLightsScratch& s,
                         RadianceBatch& out, Counters& counters) const;
@@ -113,25 +119,26 @@ class CertifiedLights {
   LightGroups groups_;
   LobeCompetition competition_;
   std::vector<bool> has_light_, is_drawn_;
-  // Per primitive, the last source that covers some of it; per source, one before that covers some
-  // of the same primitive; -1: none.
+  // Per primitive: the last source that covers part of it, or -1. before_: per source, the
+  // preceding source on the same primitive, or -1.
   std::vector<int32_t> source_of_front_, source_of_back_, before_;
   struct Far {
-    const FarCells* cells = nullptr;  // of the scene
-    uint32_t first_source = 0;        // those of the cells are the last ones
+    const FarCells* cells = nullptr;  // of the prepared scene
+    uint32_t first_source = 0;        // index of the first sky patch; sky patches end sources_
     const Occluders* occluders = nullptr;
-    FarScene scene;            // what hides much of them
-    FarPoints points;          // … where proofs are not worth while
-    ClosedShells shells;       // … and what none of it gets into
-    bool is_shut_out = false;  // … nor, as it seems, anything that other lights shine on
-    // Of portals, what hides their lights beside them; by the primitives they belong to.
+    FarScene scene;       // the scene's largest facets
+    FarPoints points;     // sampler of environment lights, used without proofs
+    ClosedShells shells;  // closed opaque surfaces, which keep environment light out
+    // rays found no environment light where other lights shine (not proved)
+    bool is_shut_out = false;
+    // Per primitive: frame around its portal, which blocks light that passes beside the portal.
     std::vector<std::vector<FacetToAdd>> frames;
-    double frame_reach = 0;  // metres by which they go on beyond their sides
-    Vec3 centre;             // of the scene, about which the cells stand
-    float reach = 0;         // metres from there within which their directions are exact
+    double frame_reach = 0;  // extent of the frames beyond the portals' sides, metres
+    Vec3 centre;             // centre of the scene and of the sky cube
+    float reach = 0;         // metres from `centre` within which patch directions are exact
   } far_;
   DrawingBudget budget_;
-  float reach_ = 1;  // metres by which hits of a cluster on a curved surface may lie apart
+  float reach_ = 1;  // largest extent of a cluster on a curved surface, metres
 };
 
 }  // namespace troffer

@@ -11,11 +11,12 @@ namespace troffer {
 
 namespace {
 
-// N points of an Owen-Sobol sequence over lights of which many are hidden err by about this much
-// times N^-2/3, relative to the light that they stand for (docs/certified.md).
+// Error of one sample. N points of an Owen-Sobol sequence over lights half in shadow err by about
+// this times N^-2/3, relative to their light (docs/certified.md, "Many lights").
 constexpr float error_of_one = 0.4f;
-constexpr float most_draws = 256;
-// What a light costs by certificates, in rays: of each hit, and once for the cluster.
+constexpr float most_draws = 256;  // largest number of samples per hit
+// Costs of a certified light in shadow rays: per hit, and per cluster. Profiled
+// (docs/certified.md).
 constexpr float cost_of_hit = 0.15f, cost_of_cluster = 12;
 
 float points_of_pixel(float share, float error) {
@@ -30,8 +31,8 @@ void sort_by_sources(const LightGroups& groups, std::vector<uint32_t>& chosen) {
 
 }  // namespace
 
-// Greedily from the strongest on, by what each saves: of the N ~ r^3/2 points that stand for a
-// share r of the light, dN/dr s for a light of share s.
+// Greedy from the strongest light on. Lights of share r of all light need N ~ r^3/2 samples, so
+// certifying a light of share s saves dN/dr s of them.
 void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hits,
                    const DrawingBudget& budget, LightsOfCluster& out) {
   const uint32_t n = groups.size();
@@ -47,7 +48,8 @@ void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hi
   const bool are_all = !groups.are_many();
   const float points = points_of_pixel(1, budget.error);
   const float cost = cost_of_hit + cost_of_cluster / float(hits);
-  const float least = 2.0f / 3 * cost * budget.viewing_rays / points;  // share, where r is 1
+  // least share that pays, at r = 1
+  const float least = 2.0f / 3 * cost * budget.viewing_rays / points;
   for (uint32_t g = 0; g < n; ++g)
     if (groups[g].first_source < groups[g].last_source && out.estimates[g] > 0 &&
         (are_all || double(out.estimates[g]) > double(least) * total))
@@ -105,7 +107,7 @@ ClusterBall ball_about(const WaitingHits& hits, std::span<const uint32_t> member
   }
   ball.centre = box.centre();
   ball.radius = 0.5f * box.diagonal();
-  // those of a normal in common need not lie in one plane
+  // Receivers with a common normal need not lie in one plane.
   for (const uint32_t m : members)
     ball.depth = std::max(ball.depth, dot(ball.normal, ball.centre - hits.receivers[m].position));
   return ball;
@@ -123,7 +125,7 @@ void DrawnLightsScratch::resize(size_t n) {
 
 namespace {
 
-// Draws at a time.
+// Number of samples per block.
 constexpr size_t block = 1024;
 
 struct Drawing {
@@ -141,8 +143,8 @@ struct Drawing {
   Rgb value(uint32_t draw) const;
 };
 
-// The groups that are drawn. False where near ones matter so much that the cluster is better
-// halved.
+// Collects the groups to sample. Returns false if near groups matter so much that the cluster
+// should be halved.
 bool Drawing::set_groups(const std::vector<float>& estimates, const std::vector<float>& near) {
   s.of_groups.clear();
   s.groups.clear();
@@ -157,8 +159,8 @@ bool Drawing::set_groups(const std::vector<float>& estimates, const std::vector<
   return of_near <= 0.1f * sum;
 }
 
-// Sets streams, samples, hits, receivers, primitives, pmfs, places, u and v of draws from these
-// hits, the first of which is so far on in s.shares.
+// Sets streams, samples, hits, receivers, primitives, pmfs, places, u and v for the draws of these
+// hits. first: index of the first hit in s.shares.
 void Drawing::choose(std::span<const uint32_t> members, size_t first) {
   const size_t n = members.size() * lights.draws;
   s.resize(n);
@@ -175,7 +177,7 @@ void Drawing::choose(std::span<const uint32_t> members, size_t first) {
   for (i = 0; i < n; ++i) {
     const std::span<const float> sums = s.shares.sums(first + i / lights.draws);
     const float place = s.numbers[2 * n + i], all = sums.back();
-    // Below the last sum, so that the group found has a share, however rounding goes.
+    // Stay below the last sum, so that rounding cannot select a group of share zero.
     const float target = std::min(place * all, std::nextafter(all, 0.0f));
     const auto k = size_t(std::upper_bound(sums.begin(), sums.end(), target) - sums.begin());
     const float before = k == 0 ? 0.0f : sums[k - 1], own = sums[k] - before;
@@ -189,7 +191,7 @@ void Drawing::choose(std::span<const uint32_t> members, size_t first) {
   }
 }
 
-// To a point of a light, just before it, as shadow_ray_to() has it.
+// Returns a ray that ends just before a point of a light, as shadow_ray_to() does.
 Ray ray_between(const ShadowReceiver& r, const LightSample& light) {
   Ray ray;
   ray.origin = r.origin;
@@ -202,7 +204,7 @@ Ray ray_between(const ShadowReceiver& r, const LightSample& light) {
   return ray;
 }
 
-// BRDF × cosine, of what does not compete or wins.
+// BRDF × cosine towards draw i, times the MIS weight for rough lobes.
 Rgb Drawing::value(uint32_t i) const {
   const uint32_t m = s.hits[i];
   const LightSample& light = s.points[i];
@@ -239,10 +241,11 @@ void Drawing::connect(size_t n) {
   }
 }
 
-// Halves clusters that are wide beside the distance of lights that matter.
+// Halves clusters that are wide relative to the distance of lights that matter, else samples the
+// cluster.
 void Drawing::of_members(std::span<uint32_t> members, const std::vector<float>& estimates,
                          const std::vector<float>& near) {
-  constexpr size_t fewest = 16;
+  constexpr size_t fewest = 16;  // smallest part of a halved cluster
   const bool is_narrow = set_groups(estimates, near);
   if (s.groups.empty()) return;
   if (!is_narrow && members.size() >= 2 * fewest) {
@@ -275,8 +278,8 @@ void Drawing::of_members(std::span<uint32_t> members, const std::vector<float>& 
   }
 }
 
-// The variance of a run's sum, by differences of neighbours in the order of the lights: between
-// strata of equal probability. Those of the same pixel share the sequence.
+// Adds the variance of a run's sum. Sorted by light, samples are strata of equal probability, so
+// half the squared differences of neighbours estimate it. Samples of one pixel share a sequence.
 void enable_variance(const WaitingHits& hits, std::span<const DrawnLightsScratch::Draw> run,
                      DrawnLightsScratch& s, RadianceBatch& out) {
   s.terms.clear();

@@ -1,12 +1,11 @@
-// Many lights: for a cluster of hits, those that are worth it are treated by certificates, one by
-// one; points of all the others are drawn, about in proportion to what they may send, and a ray to
-// each tells whether it arrives.
+// Sampling of many lights for a cluster of hits. The lights that repay certificates are certified
+// one by one. Of all others points are sampled, roughly in proportion to their unoccluded light,
+// with one shadow ray each.
 //
-// Which lights are drawn depends on positions, normals and radiances alone, so that the estimate
-// is unbiased. How many points are drawn is chosen for the error that a pixel may make: its viewing
-// rays share them, one Owen-Sobol sequence for all of them. Lights without certificates, such as
-// curved or textured meshes, are always drawn, triangle by triangle.
-// References: docs/certified.md, "Many lights".
+// Unbiased: the choice of lights depends only on positions, normals and radiances. The number of
+// samples follows from the allowed error of a pixel, whose viewing rays share one Owen-Sobol
+// sequence. Lights without certificates, such as curved or textured meshes, are always sampled,
+// triangle by triangle. References: docs/certified.md, "Many lights".
 #pragma once
 
 #include <cstdint>
@@ -19,62 +18,65 @@
 
 namespace troffer {
 
-// Allowed standard error of a pixel's light by drawing, relative to what all lights would send it
-// unoccluded, and how many viewing rays the pixel gets.
+// Allowed standard error of a pixel's sampled light, relative to the unoccluded light of all
+// lights, and what it is spent on.
 struct DrawingBudget {
-  float error = 0.01f;
-  float viewing_rays = 1;
-  // Of few lights: points from each hit where that takes less than certificates; 0: no points.
+  float error = 0.01f;     // relative, per pixel
+  float viewing_rays = 1;  // per pixel
+  // For few lights: samples per hit where these cost less than certificates; 0: none.
   uint32_t draws = 0;
-  uint32_t matte_times = 1;  // … so many times as many where no hit is glossy: they cost less there
+  uint32_t matte_times = 1;  // factor on `draws` where no hit is glossy, as matte samples cost less
   uint32_t effort_divisor = 1;  // SampleRequest::effort_divisor
   bool is_picture = false;      // SampleRequest::is_picture
 };
 
-// Which lights of a cluster are drawn; memory, and the result.
+// The lights of a cluster by treatment: certified or sampled. Scratch memory and result of
+// choose_lights().
 struct LightsOfCluster {
-  std::vector<float> estimates, near;  // per group
-  std::vector<uint8_t> is_certified;   // per group; the others are drawn
-  std::vector<uint32_t> certified;     // groups, in the order of their sources
-  uint32_t draws = 0;                  // points from each hit
-  // Of the random numbers for them: clusters with other numbers of points from each hit have
-  // another, or hits of one pixel in both would draw the same points.
+  std::vector<float> estimates, near;  // per group, as LightGroups::estimate() returns them
+  std::vector<uint8_t> is_certified;   // per group; 0: the group may be sampled
+  std::vector<uint32_t> certified;     // group indices, ordered by source
+  uint32_t draws = 0;                  // light samples per hit
+  // Number of the random sequence. Clusters with different `draws` use different sequences;
+  // otherwise two hits of one pixel could sample the same points.
   uint64_t sequence = 0;
-  std::vector<uint32_t> order;  // memory
+  std::vector<uint32_t> order;  // scratch
 };
 
-// Groups without sources are drawn in any case, others where they are many. hits: in the ball.
+// Decides which groups to certify and how many samples the rest gets. Groups without sources are
+// always sampled, others only where lights are many. hits: number of hits in the ball.
 void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hits,
                    const DrawingBudget& budget, LightsOfCluster& out);
 
-// All of them that can be certified are, and false if no other sends anything; or none is.
+// Certifies all groups that have sources and may send light. Returns true if other groups remain to
+// be sampled. certify_none() makes all groups sampled.
 bool certify_all(const LightGroups& groups, LightsOfCluster& out);
 void certify_none(LightsOfCluster& out);
 
-// A ball about the hits' receivers.
+// Returns a ball around the receivers of these hits. Precondition: `members` is not empty.
 ClusterBall ball_about(const WaitingHits& hits, std::span<const uint32_t> members);
 
-// Memory of one thread: points that wait to be looked at.
+// Scratch memory of one thread: light samples whose shadow rays are pending.
 struct DrawnLightsScratch {
   struct Draw {
-    uint32_t hit;  // in WaitingHits
-    float place;   // among the lights, in [0,1)
-    Rgb light;     // that arrives if nothing is in the way
-    int32_t ray;   // -1: none arrives
-    Rgb expected;  // what has been counted of it beforehand: taken off again
+    uint32_t hit;  // index in WaitingHits
+    float place;   // random number in [0,1) that chose the light
+    Rgb light;     // unoccluded contribution
+    int32_t ray;   // index in `rays`; -1: no contribution
+    Rgb expected;  // control variate: already added to the result, subtracted again here
   };
   std::vector<Draw> draws;
-  std::vector<size_t> runs;                   // where draws of another pixel, or cluster, begin
-  static constexpr size_t most_rays = 16384;  // that wait
+  std::vector<size_t> runs;                   // starts of new pixels or clusters in `draws`
+  static constexpr size_t most_rays = 16384;  // pending rays that trigger tracing
   std::vector<Ray> rays;
   std::vector<uint8_t> is_occluded;
   PaneFactors factors;
-  // of a cluster
+  // Scratch of one cluster.
   std::vector<float> estimates, near;
-  std::vector<float> of_groups;  // estimates of those that are drawn
+  std::vector<float> of_groups;  // estimates of the sampled groups
   std::vector<uint32_t> groups;
   LightShares shares;
-  // of a block of draws
+  // Scratch of one block of draws.
   std::vector<uint64_t> streams;
   std::vector<uint32_t> samples, primitives, hits, chosen;  // `chosen`: groups
   std::vector<float> numbers, u, v, pmfs, places;
@@ -82,13 +84,13 @@ struct DrawnLightsScratch {
   std::vector<LightSample> points;
   std::vector<uint8_t> is_valid;
   LightSampleScratch light_samples;
-  // of a run
+  // Terms of one run: place, and deviation from the expected value.
   std::vector<std::pair<float, float>> terms;
 
   void resize(size_t n);
 };
 
-// What draws are made from: the scene's groups, and the sources that they name.
+// The scene, its light groups, and the sources that the groups refer to.
 struct DrawnLights {
   const PreparedScene& scene;
   const LightGroups& groups;
@@ -96,9 +98,9 @@ struct DrawnLights {
   const LobeCompetition& competition;
 };
 
-// Draws lights.draws points from each of `members`, which is reordered, of the groups that are not
-// certified. Rays are cast, and light is added to `out`, once many wait and by resolve_draws(),
-// before which `hits` must stay.
+// Samples lights.draws points per member from the groups that are not certified; reorders
+// `members`. Shadow rays are traced once `most_rays` are pending. resolve_draws() traces the rest
+// and adds the light to `out`; `hits` must not change before that.
 void draw_lights(const DrawnLights& world, const WaitingHits& hits, std::span<uint32_t> members,
                  const LightsOfCluster& lights, DrawnLightsScratch& scratch, RadianceBatch& out,
                  Counters& counters);

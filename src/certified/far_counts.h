@@ -1,4 +1,5 @@
-// How many points of far sources each hit of a cluster gets.
+// Numbers of environment light samples for the hits of a cluster. cast_far_rays() and draw_left()
+// use them.
 #pragma once
 
 #include <algorithm>
@@ -11,12 +12,12 @@
 
 namespace troffer {
 
-// In pictures pixels whose viewing rays meet different things err by these, and get further viewing
-// rays: neither those nor these get as many points as the error alone would want.
+// Shares a pixel's samples among its hits. In pictures, a pixel's further viewing rays, and those
+// of pixels that show several things, get fewer samples: such pixels err mostly by what they show.
 class FarCounts {
  public:
-  // of_pixel: points of a pixel, all of its usual viewing rays together; open: the share of the
-  // light that arrives; least: points of a hit, if it gets any.
+  // of_pixel: samples for all usual viewing rays of a pixel together. open: share of the light that
+  // arrives. least: fewest samples of a hit that gets any.
   FarCounts(const WaitingHits& hits, std::span<const uint32_t> members, const DrawingBudget& budget,
             bool is_picture, double of_pixel, double open, double least = 0)
       : hits_(hits),
@@ -27,6 +28,8 @@ class FarCounts {
     if (!(of_pixel > 0)) return;
     const double each = std::clamp(of_pixel / double(budget.viewing_rays), least, most_points);
     usual_ = power_near(each);
+    // At most `most_fewer` times fewer samples, and `least_most_few` per hit, once the share `much`
+    // arrives.
     constexpr double most_fewer = 4, least_most_few = 8, much = 0.4;
     const double fewer = std::clamp(most_fewer * open / much, 1.0, most_fewer);
     const double most_few = least_most_few * sqr(most_fewer / fewer);
@@ -38,13 +41,14 @@ class FarCounts {
   bool is_first_of_pixel(size_t i) const {
     return i == 0 || hits_.pixels[members_[i]] != hits_.pixels[members_[i - 1]];
   }
-  // The pixel's hits begin at i.
+  // Starts the pixel whose hits begin at i.
   void look_at_pixel(size_t i) {
     size_t end = i + 1;
     while (end < members_.size() && !is_first_of_pixel(end)) ++end;
     is_divided_ = 2 * (end - i) <= first_;
   }
-  // Points of hit i, and the first of them in the pixel's sequence.
+  // Returns the number of samples of hit i, and the index of the first of them in the pixel's
+  // sequence.
   uint32_t of(size_t i, uint32_t& first_point) const {
     const uint32_t sample = hits_.samples[members_[i]];
     const bool is_further = is_picture_ && sample >= first_;
@@ -53,7 +57,8 @@ class FarCounts {
   }
 
  private:
-  // Of two, which sequences are even for: the nearest in ratio. None for nothing.
+  // Returns the power of two nearest in ratio, at least 1, because Sobol sequences are balanced for
+  // those; 0 for n = 0.
   static uint32_t power_near(double n) {
     return n > 0 ? std::bit_floor(std::max(uint32_t(n * std::sqrt(2.0)), 1u)) : 0;
   }

@@ -12,13 +12,14 @@ namespace troffer {
 
 namespace {
 
-// As for other lights (drawn_lights.cpp).
+// Factor on the number of samples, because visibility behind scattered facets is unordered
+// (docs/certified.md, "Lights at infinity").
 constexpr double clutter = 2;
-// Less than this share of the light is not taken to arrive, when numbers of draws are chosen.
+// Least share of the light assumed to arrive when the number of samples is chosen.
 constexpr double least_open = 0.02;
 constexpr uint64_t purpose_far = 0x6661'7200;
 
-// A wall is among so many of the scene's largest facets, if it counts.
+// Number of largest facets kept as candidates for occluding walls.
 constexpr size_t most_large = 96;
 
 double area_of(const Quad& q) {
@@ -38,8 +39,8 @@ class FarDrawing {
     expected_ = float(std::max(2 * d_.cluster.memory.far_open - 1, 0.0));
   }
 
-  // Points of a pixel. N of a Sobol sequence over a light of which the share p arrives err by about
-  // (p (1 - p))^½ N^-¾ of it.
+  // Number of samples per pixel. N points of a Sobol sequence over light of which the share p
+  // arrives err by about (p (1 - p))^½ N^-¾, relative to that light.
   double points_of_pixel(double error, double p) const {
     double of_left = 0, seen = 0;
     for (size_t i = 0; i < d_.members.size(); ++i) {
@@ -79,8 +80,8 @@ class FarDrawing {
   double light_of(size_t part, size_t i) const {
     return brightness_[part] * double(left_[part].unoccluded[i]);
   }
-  // In proportion to this a part is drawn: by its light alone a dim part that holds something
-  // bright would seldom be, and then count for much.
+  // Weight with which a part is chosen. Light alone would rarely choose a dim part that contains
+  // something bright, and would then weight it heavily.
   double chance_of(size_t part, size_t i) const { return light_of(part, i) * unevenness_[part]; }
   double left_of(size_t i) const {
     double sum = 0;
@@ -96,7 +97,8 @@ class FarDrawing {
     sobol_groups(s_.streams.data(), s_.samples.data(), n, 0, 3, s_.numbers.data());
   }
 
-  // Counts the share of the unoccluded light that is taken to arrive; draws bring the difference.
+  // Adds the share of the unoccluded light that is expected to arrive: a control variate, whose
+  // error the samples correct.
   void expect(size_t i, RadianceBatch& out) const {
     const uint32_t m = d_.members[i];
     Rgb sum;
@@ -105,7 +107,7 @@ class FarDrawing {
     out.add(d_.hits.indices[m], d_.hits.is_direct[m] != 0, d_.hits.weights[m] * sum * expected_, 0);
   }
 
-  // points: expected number of them in the part.
+  // points: expected number of samples in the part.
   void connect(DrawnLightsScratch::Draw& draw, size_t part, double points, float u, float v) {
     const CertifiedSource& source = *d_.sources[left_[part].request];
     const ShadowReceiver& r = d_.hits.receivers[draw.hit];
@@ -114,7 +116,7 @@ class FarDrawing {
     const Vec3 wi(d * (1 / distance));
     const float cosine = dot(wi, r.normal);
     const bool is_above = dot(wi, r.horizon) > 0;
-    // The unoccluded light of a disk knows the horizon of the normal alone.
+    // The closed form for disks clips at the horizon of the shading normal only.
     if (!(cosine > 0) || !(is_above || source.flat.is_disk)) return;
     const Parallelogram& plane = source.flat.plane;
     const double steradians =
@@ -132,7 +134,7 @@ class FarDrawing {
     s_.rays.push_back(ray);
   }
 
-  // BRDF × cosine, of what does not compete or wins.
+  // BRDF × cosine, times the MIS weight for rough lobes.
   Rgb value(const CertifiedSource& source, uint32_t m, const Vec3& wi, float cosine) const {
     if (d_.hits.glossy[m] < 0) return Rgb{cosine};
     const GlossyHit& hit = d_.hits.glossy_hits[size_t(d_.hits.glossy[m])];
@@ -144,7 +146,7 @@ class FarDrawing {
   DrawnLightsScratch& s_;
   std::vector<CellPoints> points_;  // per part
   std::vector<double> brightness_, unevenness_;
-  float expected_ = 0;  // share of the unoccluded light of matte hits that is counted beforehand
+  float expected_ = 0;  // share of matte hits' unoccluded light added as control variate
 };
 
 }  // namespace
@@ -153,7 +155,7 @@ FarScene far_scene(const Occluders& occluders) {
   std::vector<std::pair<double, uint32_t>> order;
   for (uint32_t i = 0; i < occluders.facet_count(); ++i) {
     order.emplace_back(-area_of(occluders.facet(i)), i);
-    // There may be millions: those that cannot be among the largest go now and then.
+    // Drops facets that cannot be among the largest from time to time; there may be millions.
     if (order.size() < 4 * most_large) continue;
     std::nth_element(order.begin(), order.begin() + std::ptrdiff_t(most_large), order.end());
     order.resize(most_large);

@@ -1,8 +1,9 @@
-// Light from infinity where facets stand too densely before it for lists and masks: points of all
-// that is left of skies, images and suns are drawn together, about in proportion to what they would
-// send, and a ray to each tells whether it arrives.
+// Samples the environment light that proofs leave open, because too many facets stand before it for
+// lists and masks. certified_lights.h calls this after certified_light().
 //
-// What is left depends on geometry and on rays of earlier clusters (shadow/divide_far.h). Unbiased.
+// Points of all parts left open are sampled together, in proportion to their unoccluded light times
+// its unevenness, with one shadow ray each. Which parts are left open depends on geometry and on
+// rays of earlier clusters (shadow/divide_far.h), so the estimate is unbiased.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +14,22 @@
 
 namespace troffer {
 
-// What hides much of a scene from what is far away: its largest facets.
+// Returns the scene's largest facets, which may hide much of an environment light.
 FarScene far_scene(const Occluders& occluders);
 
+// Inputs of draw_left(). All referenced objects must outlive it.
 struct FarDraws {
   const PreparedScene& scene;
   const LobeCompetition& competition;
   const WaitingHits& hits;
-  std::span<const uint32_t> members;                // of the cluster, in its order
-  const CertifiedCluster& cluster;                  // after certified_light
-  std::span<const CertifiedSource* const> sources;  // of its requests
+  std::span<const uint32_t> members;                // hits of the cluster, in its order
+  const CertifiedCluster& cluster;                  // as certified_light() left it
+  std::span<const CertifiedSource* const> sources;  // of the cluster's requests
 };
 
-// Draws points of cluster.memory.left from each member, so many that they err by the budget's error
-// of the light that arrives, about. As draw_lights(), which shares the memory: resolve_draws()
-// finishes it.
+// Samples points of cluster.memory.left for each member. Their number is chosen so that they err by
+// about the budget's error, relative to the light that arrives. Rays may remain pending in
+// `scratch`, which draw_lights() shares; resolve_draws() finishes them.
 void draw_left(const FarDraws& draws, const DrawingBudget& budget, DrawnLightsScratch& scratch,
                RadianceBatch& out, Counters& counters);
 

@@ -7,26 +7,27 @@ namespace troffer {
 
 namespace {
 
-// A part gives so much of all light at most, or lies within a sine of its middle; and a cell is
-// halved so often at most for that.
+// Limits of a part: its share of all environment light, and the sine of its angular radius. A part
+// above either limit is halved, at most most_halvings times.
 constexpr double most_share = 1.0 / 48, most_sine = 0.15;
 constexpr int most_halvings = 8;
-// Of all light: what parts' root mean squares may be over their means, in sum. Of the variance of a
-// point in the open it leaves twice that, far less than what may be in the way adds.
+// Limit on the summed unevenness (root mean square minus mean) of all parts, relative to all light.
+// The relative variance of an unoccluded sample is then at most twice that, far below what
+// occlusion adds.
 constexpr double uneven_enough = 0.0003;
-constexpr size_t most_parts = 1024;  // if halving for that reason made them
+constexpr size_t most_parts = 1024;  // limit for halving by unevenness
 
 Vec3d middle_of(const Parallelogram& p) {
   return p.origin + (p.u + p.v) * 0.5;
 }
 
-// Luminances of a part of an image's cell, by all values that it shows.
+// Luminance of an image's texels within a part of a sky patch.
 struct Values {
-  double mean = 0, usual = 0;  // the latter: root mean square
-  int columns = 0, rows = 0;   // of the table
+  double mean = 0, usual = 0;  // usual: root mean square
+  int columns = 0, rows = 0;   // texels covered
 };
 
-// From (s0, t0) to (s1, t1) of the cell.
+// Returns the values of the part from (s0, t0) to (s1, t1) of the patch.
 Values values_of(const FarCell& cell, double s0, double s1, double t0, double t1) {
   const int last = cell.table_size - 1;
   const auto first_of = [&](double x) {
@@ -52,14 +53,14 @@ Values values_of(const FarCell& cell, double s0, double s1, double t0, double t1
   return v;
 }
 
-// A part of a source on its way to be one of FarParts. Metres; directions are from the scene's
-// middle.
+// A part of a source during subdivision. Lengths in metres, directions from the centre of the
+// scene.
 struct Piece {
   const CertifiedSource* source = nullptr;
   Parallelogram plane;
-  Vec3d way;  // to the middle
+  Vec3d way;  // to the part's centre
   double area = 0, steradians = 0, sine = 0;
-  Values values;  // of an image
+  Values values;  // images only
   double usual = 0, of_cell = 0;
 
   Piece(const CertifiedSource& s, const Parallelogram& p) : source(&s), plane(p) {
@@ -81,9 +82,11 @@ struct Piece {
     usual = of_cell = values.usual;
   }
   bool is_image() const { return source->far->table != nullptr; }
-  // Luminance × sr.
+  // Luminance × sr. A tenth of it is the patch's mean, as a defence against bright spots that the
+  // centre misses.
   double strength() const { return steradians * (0.9 * usual + 0.1 * of_cell); }
-  // Its root mean square over its mean, luminance × sr; nothing where halving would change nothing.
+  // Root mean square minus mean, luminance × sr; 0 for a single texel, which halving would not
+  // change.
   double unevenness() const {
     return values.columns * values.rows > 1 ? steradians * (values.usual - values.mean) : 0.0;
   }
@@ -130,7 +133,7 @@ void cut(const Piece& piece, double all, int halvings, std::vector<Piece>& out) 
   for (const Piece& half : piece.halves()) cut(half, all, halvings - 1, out);
 }
 
-// The least even first.
+// Halves the most uneven parts until all are even enough or there are most_parts.
 void even_out(std::vector<Piece>& pieces) {
   const auto is_evener = [](const Piece& a, const Piece& b) {
     return a.unevenness() < b.unevenness();

@@ -1,4 +1,5 @@
-// Small parts of the cells of lights at infinity, of which points are drawn (far_points.h).
+// Parts of sky patches, small enough that points can be sampled in them by the strengths of their
+// corners. FarPoints (far_points.h) samples them.
 #pragma once
 
 #include <array>
@@ -10,7 +11,8 @@
 
 namespace troffer {
 
-// Directions are in units of the distance of the part's face of the cube.
+// A parallelogram of directions from the scene's centre, in units of the distance to the part's
+// face of the sky cube.
 struct FarPart {
   const CertifiedSource* source = nullptr;
   Vec3 origin, u, v;
@@ -19,25 +21,27 @@ struct FarPart {
     return origin + (k % 2 != 0 ? u : Vec3{}) + (k / 2 != 0 ? v : Vec3{});
   }
   Vec3 middle() const { return origin + (u + v) * 0.5f; }
-  // Luminance × sr of all of the part if it were as at its corners, (0,0) (1,0) (0,1) (1,1), over
-  // their distance: times the height over a horizon it is what a receiver gets. Suns: the first.
+  // Luminance × sr of the whole part if it were everywhere as at its corner k, divided by that
+  // corner's distance. Multiplied by a corner's height over the horizon, it gives the light of a
+  // receiver. Suns use the first entry only.
   std::array<float, 4> strength{};
 };
 
 struct FarParts {
   std::vector<FarPart> parts;  // of skies and images
-  std::vector<FarPart> suns;   // one of each
+  std::vector<FarPart> suns;   // one per sun
 };
 
-// sources: those of lights at infinity, which must stay. A part gives a small share of all light at
-// most, or is small as seen from the scene; and parts of images are halved, the least even ones
-// first, until they are even within, texels at the last, or there are very many. Points that are
-// drawn by the parts' root mean square and evenly within them have a second moment of (sum of root
-// mean square × sr)², where by the image itself it would be (sum of mean × sr)²: what halving makes
-// less of is the difference of the two.
+// Cuts the sky patches of environment lights into parts; `sources` must outlive them. Each part
+// carries a small share of all light or is small as seen from the scene. Parts of images are also
+// halved, most uneven first, until they are even within the limit, are single texels, or are very
+// many.
+//
+// Samples chosen by root mean square and spread evenly within parts have the second moment (Σ root
+// mean square × sr)². Perfect sampling has (Σ mean × sr)². Halving reduces the difference.
 FarParts cut_far_parts(std::span<const CertifiedSource> sources);
 
-// The radiance that a point of a source at infinity sends.
+// Returns the radiance of an environment source from the direction `way`, which need not be unit.
 Rgb far_radiance_of(const CertifiedSource& source, const Vec3& way);
 
 }  // namespace troffer

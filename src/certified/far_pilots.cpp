@@ -9,19 +9,22 @@ namespace troffer {
 namespace {
 
 constexpr uint64_t purpose_pilot = 0x6661'7271;
+// Pilot rays of a batch to the sky; suns get half as many triples.
 constexpr size_t pilots = 64;
-// Where none of these arrives in what seems shut out, one for so many hits, at most.
+// Where no pilot ray arrives in a scene that seems shut out: one ray for this many hits, at most
+// most_pilots.
 constexpr size_t hits_of_pilot = 2, most_pilots = 1024;
-// Where less of the light arrives, rays err by much, and proofs may cost more.
+// Share of light that must arrive before clutter is tested. Below it, rays err by much and proofs
+// may cost more.
 constexpr double open_enough = 0.25;
 
-// Rays from the hits that look what would arrive.
+// Pilot rays from hits towards environment lights.
 class Pilots {
  public:
   explicit Pilots(const FarPointDraws& draws) : d_(draws) {}
 
-  // Those from number `first` to `last`, of skies and images. Of four rays two come from one hit,
-  // and a third from the next of its pixel.
+  // Casts rays number `first` to `last` to skies and images. Of every four rays, two leave one hit,
+  // a third leaves the next hit of its pixel, and the fourth leaves another hit.
   void look_at_sky(size_t first, size_t last) {
     begin();
     for (size_t k = first; k < last; ++k) {
@@ -61,7 +64,8 @@ class Pilots {
     note_hidden();
   }
 
-  // Triples of rays: two from one hit to the same sun, and one from the next of its pixel.
+  // Casts triples of rays to suns: two from one hit to the same sun, and one from the next hit of
+  // its pixel.
   void look_at_suns(size_t first, size_t last) {
     begin();
     if (d_.points.suns() == 0) return;
@@ -90,9 +94,9 @@ class Pilots {
     note_hidden();
   }
 
-  // Whether there are about as many facets in the way as rays have met one.
+  // True if the occluded rays met more than half as many different facets as there are rays.
   bool is_clutter() {
-    constexpr size_t fewest = 3;
+    constexpr size_t fewest = 3;  // fewer occluded rays do not suffice for a decision
     if (hidden_.size() < fewest) return false;
     std::vector<Hit> hits(hidden_.size());
     d_.scene.tracer.closest(hidden_, hits, Coherence::coherent, Meeting::no_panes);
@@ -109,7 +113,7 @@ class Pilots {
 
   FarShare share() const {
     FarShare s;
-    // as if two more had met one of each
+    // Prior: one ray that arrived and one that did not.
     const double part = sums_.of_sky > 0 ? sums_.open_sky / sums_.of_sky : 0.5, n = sums_.sky_rays;
     s.open_sky = (part * n + 1) / (n + 2);
     s.open_sun = (sums_.open_sun + 1) / (sums_.triples + 2);
@@ -118,7 +122,7 @@ class Pilots {
         sums_.triples > 0
             ? std::max(0.5 * (sums_.differ_in_pixel - sums_.differ) / sums_.triples, 0.0)
             : 0;
-    // of what arrives if nothing is in the way
+    // Relative to the unoccluded light.
     const double whole = n > 0 ? sums_.of_sky / n : 0;
     s.spread_of_sky_in_pixel =
         whole > 0 ? std::max(0.5 * (sums_.sky_differs_in_pixel - sums_.sky_differs), 0.0) /
@@ -147,7 +151,7 @@ class Pilots {
                        p.inverse_pdf);
     push(r, p);
   }
-  // Without weight below the horizon.
+  // Adds a ray in any case; its weight is 0 below the horizon.
   void add_always(const ShadowReceiver& r, const FarPoints::Choice& c) {
     const FarPoints::Point p = d_.points.point(c, r.normal);
     weights_.push_back(is_above(r, p.wi) ? 1.0f : 0.0f);
@@ -174,12 +178,12 @@ class Pilots {
   const FarPointDraws& d_;
   std::vector<Ray> rays_of_, hidden_;
   std::vector<float> weights_;
-  std::vector<int32_t> ray_of_;  // of each look at the sky; -1: none
+  std::vector<int32_t> ray_of_;  // per pilot sample of the sky: its ray, or -1
   std::vector<uint8_t> is_occluded_, is_shown_;
   struct Sums {
-    double sky = 0, suns = 0;  // chances, of all receivers
+    double sky = 0, suns = 0;  // unoccluded light, summed over receivers
     double of_sky = 0, open_sky = 0, sky_rays = 0;
-    double sky_triples = 0, sky_differs = 0, sky_differs_in_pixel = 0;  // squares
+    double sky_triples = 0, sky_differs = 0, sky_differs_in_pixel = 0;  // squared differences
     double triples = 0, open_sun = 0, differ = 0, differ_in_pixel = 0;
   } sums_;
   size_t rays_ = 0;
@@ -189,7 +193,7 @@ class Pilots {
 
 FarShare open_share_of_batch(const FarPointDraws& d, bool is_shut_out) {
   Pilots p(d);
-  constexpr size_t fewest = 32;  // that must have looked
+  constexpr size_t fewest = 32;  // rays needed to conclude that the scene seems closed
   const size_t n = std::min(pilots, 4 * d.hits.size());
   p.look_at_sky(0, n);
   p.look_at_suns(0, n / 2);

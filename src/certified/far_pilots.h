@@ -1,5 +1,5 @@
-// A look at what of the light from infinity arrives at a batch of hits, by rays that count for
-// nothing else: it decides what is proved and how many rays are cast.
+// Pilot rays that estimate how much environment light arrives at a batch of hits. They decide what
+// is proved and how many rays are cast, and do not enter the result.
 #pragma once
 
 #include "certified/far_points.h"
@@ -8,21 +8,24 @@
 
 namespace troffer {
 
-// What share of the light of far sources arrives at the hits of a batch, about. Not 0 or 1.
+// Estimated shares of unoccluded environment light that arrive at a batch's hits. The shares are
+// never exactly 0 or 1.
 struct FarShare {
-  double open = 0.5;                      // of all of it
+  double open = 0.5;                      // of all environment light
   double open_sky = 0.5, open_sun = 0.5;  // of skies and images, of suns
-  // Mean variance of what two rays from one hit to the same sun say.
+  // Mean variance of the visibility of one sun between two rays from one hit.
   double spread_of_sun = 0.25;
-  // … and of what suns send to the hits of one pixel, and skies and images.
+  // Variance of sun visibility, and of sky light, between the hits of one pixel, beyond that within
+  // a hit.
   double spread_in_pixel = 0, spread_of_sky_in_pixel = 0;
-  bool seems_closed = false;  // shut out, and of many rays none has arrived
-  // Much of it arrives, and almost every ray that does not has met another facet: lists of what is
-  // in the way are long, and prove little.
+  bool seems_closed = false;  // the scene seems shut out, and no pilot ray arrived
+  // True if much light arrives and most occluded rays met different facets. Facet lists are then
+  // long and prove little.
   bool is_behind_clutter = false;
 };
 
-// Whether light can come from there; and the ray that asks.
+// True if light from the direction wi can reach the receiver. far_ray() returns the shadow ray in
+// that direction.
 inline bool is_above(const ShadowReceiver& r, const Vec3& wi) {
   return dot(wi, r.normal) > 0 && dot(wi, r.horizon) > 0;
 }
@@ -33,6 +36,7 @@ inline Ray far_ray(const ShadowReceiver& r, const Vec3& wi) {
   return ray;
 }
 
+// The batch of hits, and the environment lights and occluders that rays from it may meet.
 struct FarPointDraws {
   const PreparedScene& scene;
   const LobeCompetition& competition;
@@ -41,8 +45,8 @@ struct FarPointDraws {
   const Occluders& occluders;
 };
 
-// By rays that count for nothing else. is_shut_out: nothing arrives, as it seems; then it is looked
-// at more closely.
+// Estimates the shares by pilot rays. is_shut_out: true if probably no environment light enters
+// (lit_places.h); then more rays are cast to confirm it.
 FarShare open_share_of_batch(const FarPointDraws& draws, bool is_shut_out);
 
 }  // namespace troffer

@@ -14,8 +14,8 @@ namespace troffer {
 namespace {
 
 constexpr float tiny = 1e-30f;
-// Normals that chances are made for beforehand: along an edge of a face of a cube; and of all of
-// them times the parts.
+// Precomputed chances: number of normals along an edge of a cube face, and limit on normals ×
+// parts. The number is halved above the limit.
 constexpr size_t most_normals = 8, most_about = size_t(1) << 20;
 
 }  // namespace
@@ -67,7 +67,7 @@ void FarPoints::plant(std::span<FarPart> parts, size_t leaf, size_t leaves) {
 
 namespace {
 
-// Nothing where all corners lie below the horizon, and so all between them.
+// Adds a quarter of each part's light at one corner; 0 for a corner below the horizon.
 TROFFER_MULTIVERSION
 void add_chances(const Vec3& normal, size_t n, const float* __restrict x, const float* __restrict y,
                  const float* __restrict z, const float* __restrict strength,
@@ -83,7 +83,7 @@ TROFFER_MULTIVERSION
 void set_branches(size_t n, const float* __restrict node, float* __restrict left,
                   float* __restrict first, float* __restrict inverse) {
   for (size_t i = 1; i < n; ++i) {
-    // without chance on either side nothing goes there, whatever is rounded
+    // If neither child has any probability, share 1 keeps the search away from NaN.
     const float share = node[2 * i + 1] > 0 ? node[2 * i] / node[i] : 1.0f;
     left[i] = share;
     first[2 * i] = 0;
@@ -93,8 +93,8 @@ void set_branches(size_t n, const float* __restrict node, float* __restrict left
   }
 }
 
-// The normal through (x, y), both in [-1,1], of a cube's face: its axes in turn, each upwards
-// first.
+// Unit normal through (x, y), both in [-1,1], of a face of a cube. Faces are ordered by axis, the
+// positive one first.
 Vec3 on_cube(size_t face, float x, float y) {
   Vec3 v;
   const size_t axis = face / 2;
@@ -104,7 +104,8 @@ Vec3 on_cube(size_t face, float x, float y) {
   return normalize(v);
 }
 
-// In [0,1] with density in proportion to the line from a to b, not both 0.
+// Returns a sample in [0,1] with density proportional to the line from a to b, which must not both
+// be 0.
 float sample_line(float a, float b, float u) {
   const float root = std::sqrt(a * a + (b * b - a * a) * u);
   return std::min(u * (a + b) / std::max(a + root, tiny), 1.0f);
@@ -112,7 +113,7 @@ float sample_line(float a, float b, float u) {
 
 }  // namespace
 
-// From the leaves' chances.
+// Computes inner nodes from the leaves.
 void FarPoints::Chances::set_tree() {
   const size_t n = of_node_.size() / 2;
   float* node = of_node_.data();
@@ -129,7 +130,7 @@ void FarPoints::set_suns(const Vec3& normal, float reach_of_normals, Chances& c)
   for (const FarPart& p : suns_) {
     const Vec3 middle = p.middle();
     const float cosine = dot(normal, normalize(middle));
-    // 1.01: no sun of which some is above the horizon is left out
+    // The factor 1.01 keeps every sun that is partly above the horizon.
     const float reach = 0.505f * length(p.u + p.v) / length(middle) + 1e-3f + reach_of_normals;
     c.of_sun_.push_back(cosine + reach > 0 ? p.strength[0] * std::max(cosine, 0.3f * reach) : 0.0f);
     c.suns_ += c.of_sun_.back();
@@ -146,7 +147,7 @@ void FarPoints::make_chances_about() {
           return on_cube(face, (float(i) + x) * scale - 1, (float(j) + y) * scale - 1);
         };
         const Vec3 middle = normal_at(0.5f, 0.5f);
-        float reach = 0;  // of the square's normals
+        float reach = 0;  // largest distance of the square's normals from the middle one
         for (const float x : {0.0f, 1.0f})
           for (const float y : {0.0f, 1.0f})
             reach = std::max(reach, 1.001f * length(normal_at(x, y) - middle));
@@ -203,7 +204,7 @@ FarPoints::Choice FarPoints::choose(const Chances& c, float u, float v) const {
   const float* node = c.of_node_.data();
   const size_t n = parts_.size();
   size_t i = 1;
-  const auto go_down = [&](float& x) {  // without branches, which no processor could foresee
+  const auto go_down = [&](float& x) {  // branch-free, as branches here cannot be predicted
     i = 2 * i + (x < c.left_[i] ? 0 : 1);
     x = std::min((x - c.first_[i]) * c.inverse_[i], one_minus_epsilon);
   };
@@ -237,7 +238,7 @@ FarPoints::Point FarPoints::point(const Choice& c, const Vec3& normal) const {
     a = 0.5f + radius * std::cos(angle);
     b = 0.5f + radius * std::sin(angle);
   } else {
-    // Bilinear between the corners, as the chance of the part is.
+    // Bilinear between the corners, like the part's probability.
     std::array<float, 4> g;
     for (size_t k = 0; k < 4; ++k) g[k] = p.strength[k] * std::max(dot(normal, p.corner(k)), 0.0f);
     a = sample_line(g[0] + g[2], g[1] + g[3], a);
@@ -256,7 +257,7 @@ FarPoints::Point FarPoints::point(const Choice& c, const Vec3& normal) const {
 }
 
 void FarPoints::radiance(std::span<const Point> points, std::vector<Rgb>& out) const {
-  constexpr size_t most = 64;  // at a stroke
+  constexpr size_t most = 64;  // points evaluated together
   std::array<std::array<float, most>, 6> a{};
   out.resize(points.size());
   for (size_t i = 0; i < points.size();) {

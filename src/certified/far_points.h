@@ -1,9 +1,9 @@
-// Points of all lights at infinity: small parts of their cells, chosen by the light that they would
-// send (far_parts.h), places in them by what their corners would, and those of suns. No shafts, no
-// lists, no exact light: for hits that proofs are not worth (far_rays.h).
+// Sampling of all environment lights together, for hits where proofs do not pay (far_rays.h). A
+// part of a sky patch (far_parts.h) or a sun is chosen in proportion to its unoccluded light. The
+// point within a part is chosen in proportion to a bilinear function of its corners' light.
 //
-// Seen from anywhere in the scene a point lies in the same direction (light/far_cells.h), so
-// receivers matter by their normals alone.
+// A point of a sky patch lies in the same direction from everywhere in the scene
+// (light/far_cells.h). So only the normals of receivers matter.
 #pragma once
 
 #include <array>
@@ -20,25 +20,26 @@ namespace troffer {
 class FarPoints {
  public:
   FarPoints() = default;
-  // sources: those of lights at infinity, which must stay.
+  // sources: the sky patches and suns of environment lights, which must outlive this object.
   explicit FarPoints(std::span<const CertifiedSource> sources);
   bool is_empty() const { return parts_.empty() && suns_.empty(); }
 
-  // A point: of the part with this number, by the numbers (u,v) left in it.
+  // A chosen part, and the uniform numbers (u,v) that remain for the point within it.
   struct Choice {
     uint32_t part = 0;
-    float chance = 0;  // of the part; 0: none
+    float chance = 0;  // probability of the part; 0: no point
     float u = 0, v = 0;
   };
   struct Point {
     const CertifiedSource* source = nullptr;  // null: none
-    Vec3 way, wi;                             // towards it, metres; and the unit direction
-    float inverse_pdf = 0;                    // sr
+    Vec3 way, wi;           // vector towards the point in metres, and its unit direction
+    float inverse_pdf = 0;  // 1 / density, sr
   };
-  // The parts' chances for receivers of one normal, as a tree: nodes of a heap, the root being 1.
+  // Probabilities of all parts for receivers of one normal, as a binary tree: nodes in heap order,
+  // with root 1.
   class Chances {
    public:
-    // Of skies and images, and of suns: light that nothing hides, about.
+    // Approximate unoccluded light of skies and images, and of suns, luminance × sr.
     float all() const { return of_node_.empty() ? 0 : of_node_[1]; }
     float suns() const { return suns_; }
     float of_sun(size_t k) const { return of_sun_[k]; }
@@ -48,61 +49,62 @@ class FarPoints {
     void set_tree();
     Vec3 normal_;
     std::vector<float> of_node_, of_sun_;
-    // What of a node's chance is its left child's; where a child's share begins in its parent's,
-    // and the inverse of that share.
+    // Per node: the left child's share of its probability. Per child: where its share begins in its
+    // parent's, and the inverse of its share.
     std::vector<float> left_, first_, inverse_;
     float suns_ = 0;
   };
-  // False where all parts are below the receiver's horizon. What is there for the same normal
-  // stays.
+  // Computes the probabilities for a receiver's normal. Returns false if all parts lie below its
+  // horizon. Does nothing but return if `chances` already belongs to that normal.
   bool set_chances(const ShadowReceiver& receiver, Chances& chances) const;
-  // For receivers of about this normal, made beforehand: what sends light to any of them has at
-  // least half the chance that it would have by its own normal, but for what all are in sum. What a
-  // few points cost would else be little beside their chances.
+  // Returns precomputed probabilities for a neighbourhood of `normal`. Every part that lights any
+  // normal near it keeps at least half its own weight, before normalization. Use these for few
+  // samples, where set_chances() would cost more than the samples.
   const Chances& chances_about(const Vec3& normal) const;
 
-  // Of skies and images, by (u, v) in [0,1)²: even points become points that are as even, since
-  // every branch of the tree goes on with its share of u or v. chances.all() is over 0. Parts of
-  // neighbouring numbers lie close to each other.
+  // Chooses a part of a sky or image by (u, v) in [0,1)². Stratified numbers give stratified
+  // points, because each branch of the tree rescales u or v. Parts with neighbouring indices lie
+  // close together. Precondition: chances.all() > 0.
   Choice choose(const Chances& chances, float u, float v) const;
-  // With which it becomes one of this part, of a sky or image.
+  // Probability with which choose() returns this part; not for suns.
   float chance_of(const Chances& chances, uint32_t part) const {
     return chances.of_node_[parts_.size() + part] / chances.all();
   }
-  // Of one of the suns, whose numbers follow those of all others.
+  // Chooses a point of one given sun. Suns' part indices follow all others.
   size_t suns() const { return suns_.size(); }
   Choice choose_sun(size_t sun, float u, float v) const {
     return {uint32_t(parts_.size() + sun), 1, u, v};
   }
-  // Of any sun, by `place` in [0,1). chances.suns() is over 0.
+  // Chooses a sun by `place` in [0,1) in proportion to its light. Precondition: chances.suns() > 0.
   Choice choose_any_sun(const Chances& chances, float u, float v, float place) const;
   size_t parts() const { return parts_.size() + suns_.size(); }
 
-  // For a receiver of the normal that the choice was made for, or about which it was.
+  // Returns the chosen point for a receiver normal, which must be covered by the chances that the
+  // choice was made with. Its source is null if there is none.
   Point point(const Choice& choice, const Vec3& normal) const;
-  // The radiance that the points send.
+  // Computes the radiance of each point; black for points without a source.
   void radiance(std::span<const Point> points, std::vector<Rgb>& out) const;
 
  private:
   void make_chances_about();
   Chances chances_within(const Vec3& normal, float reach) const;
-  // reach: of the normals, about this one.
+  // Sets the suns' weights for all normals within `reach` of this one.
   void set_suns(const Vec3& normal, float reach, Chances& chances) const;
-  // Puts parts into leaves from `leaf` on, neighbours together.
+  // Puts parts into the leaves from `leaf` on, so that neighbours stay together.
   void plant(std::span<FarPart> parts, size_t leaf, size_t leaves);
   const FarPart& part(uint32_t i) const {
     return i < parts_.size() ? parts_[i] : suns_[i - parts_.size()];
   }
-  std::vector<FarPart> parts_;  // by leaf of the tree, some of them empty
+  std::vector<FarPart> parts_;  // by leaf of the tree; some are empty
   std::vector<FarPart> suns_;
-  // Per leaf: its corners and their strengths.
+  // Per leaf: corners and their strengths.
   std::array<std::vector<float>, 4> x_, y_, z_, strength_;
-  size_t normals_ = 0;          // of those below, along an edge of a face of a cube
-  std::vector<Chances> about_;  // face by face, row by row
+  size_t normals_ = 0;          // cells of about_ along an edge of a cube face
+  std::vector<Chances> about_;  // by face, row and column
 };
 
-// Whether a source at infinity shows at x in the direction wi what nothing hides there: where it
-// has a portal, through that alone.
+// True if light of an environment source can reach x from direction wi past its portal. Always true
+// without a portal.
 bool is_through_portal(const LightPrimitives& primitives, const CertifiedSource& source,
                        const Vec3& x, const Vec3& wi);
 

@@ -14,24 +14,25 @@ namespace {
 
 constexpr uint64_t purpose_points = 0x6661'7270;
 constexpr size_t most_waiting_rays = 16384;
-// Where no pilot arrives, so little light can that more points of a hit are not worth their time.
+// Samples per hit at most where no pilot ray arrived: so little light cannot repay more.
 constexpr double most_of_closed = 1;
-// As for other lights (far_draws.cpp).
+// Factor on the number of samples for unordered visibility, like `clutter` in far_draws.cpp.
 constexpr double clutter_of_rays = 2;
-// Points of a hit: what it costs is worth so many, where what arrives differs from place to place.
+// Fewest samples per hit. A viewing ray costs about as much, and neighbouring hits differ by about
+// as much (docs/certified.md).
 constexpr double least_of_sky = 8, least_of_sun = 4;
-constexpr uint32_t most_few = 16;       // points that are not worth chances of their own
-constexpr uint32_t fewest_points = 16;  // of a hit that asks for fewer because suns shine there
+constexpr uint32_t most_few = 16;       // samples up to which precomputed chances are used
+constexpr uint32_t fewest_points = 16;  // per hit where suns reduce the number
 
-// Rays of a cluster's members to the sky and images, or to a sun.
+// Shadow rays of a cluster's members to the sky and images, or to one sun.
 class Casting {
  public:
   Casting(const FarPointDraws& d, std::span<const uint32_t> members, FarRays& s, RadianceBatch& out,
           Counters& counters)
       : d_(d), members_(members), s_(s), out_(out), counters_(counters) {}
 
-  // sun: -1: the sky and images. counts: which points of the pixel's sequence; of those each member
-  // gets no more than its number.
+  // sun: index of a sun; -1: the sky and images. counts: which points of the pixel's sequence each
+  // member gets, at most s_.numbers of them.
   void cast(int sun, FarCounts& counts) {
     is_sun_ = sun >= 0;
     for (size_t i = 0; i < members_.size(); ++i) {
@@ -47,7 +48,7 @@ class Casting {
     trace();
   }
 
-  // Of the sky's points, fewer where more has arrived already, of which the sky is a small part.
+  // Reduces the number of sky samples where suns and other sources have brought much light.
   void set_numbers(uint32_t usual, double open_sky) {
     for (size_t i = 0; i < members_.size(); ++i) {
       const Vec3& normal = d_.hits.receivers[members_[i]].normal;
@@ -80,7 +81,8 @@ class Casting {
     }
   }
 
-  // By the member's own normal, unless that is no neighbour's and for a few points only.
+  // Returns chances for the member's own normal, or precomputed ones if it has few samples and no
+  // neighbour shares its normal.
   const FarPoints::Chances& chances_of(size_t i, uint32_t n) {
     const ShadowReceiver& r = d_.hits.receivers[members_[i]];
     const auto is_as_of = [&](size_t j) {
@@ -94,7 +96,7 @@ class Casting {
     return s_.chances;
   }
 
-  // By the number of the part, so that rays side by side go almost the same way.
+  // Sorts samples by part, so that consecutive rays are nearly parallel.
   void sort() {
     const size_t n = s_.choices.size();
     s_.first.assign(d_.points.parts() + 1, 0);
@@ -109,7 +111,7 @@ class Casting {
     }
   }
 
-  // The points of a pixel become rays that wait.
+  // Turns the samples of a pixel into pending rays.
   void finish_pixel() {
     const size_t n = s_.choices.size();
     if (n == 0) return;
@@ -157,8 +159,9 @@ class Casting {
     s_.rays.clear();
   }
 
-  // A pixel's terms. Their variance is by differences of neighbours in the order of the parts,
-  // those of hits with about as many points together: such have a sequence in common.
+  // Terms of a pixel, in the order of the parts. Their variance is estimated from differences of
+  // neighbours. Hits with about equal numbers of samples share a chain, because they share a
+  // sequence.
   struct Chain {
     float last = 0, squares = 0;
     uint32_t count = 0;
@@ -207,9 +210,9 @@ class Casting {
   bool is_sun_ = false;
 };
 
-// What arrives at the cluster's members, luminance × sr: means of some of them.
+// Mean light of the cluster's members, luminance × sr, from up to most_looks of them.
 struct FarLight {
-  double sky = 0, suns = 0, others = 0;  // the first two if nothing is in the way
+  double sky = 0, suns = 0, others = 0;  // the first two unoccluded
 };
 
 FarLight mean_light(const FarPointDraws& d, std::span<const uint32_t> members,
@@ -227,21 +230,22 @@ FarLight mean_light(const FarPointDraws& d, std::span<const uint32_t> members,
   return l;
 }
 
-// N of a sequence over light of which rays from one place say so different things err by
-// spread × N^-3/4; of a pixel, or of a point's samples.
+// Number of samples of a pixel, or of a point. N points of a sequence over light with standard
+// deviation `spread` err by spread × N^-3/4.
 double points_for(double spread, double allowed) {
   return std::max(allowed > 0 ? clutter_of_rays * std::pow(spread / allowed, 4.0 / 3) : 0.0, 1.0);
 }
 
-// How many of a pixel's points go to each sun, and to the sky by what arrives from there alone.
+// Samples per pixel for each sun, and for the sky. The sky's error budget is relative to the sky's
+// own light.
 struct FarNumbers {
   double sun = 0, sky = 0;
 };
 
 FarNumbers numbers_for(const FarPointDraws& d, const FarLight& light, const FarShare& share,
                        const DrawingBudget& budget) {
-  // What a pixel's viewing rays differ by is left, of its further ones too: no need to know each
-  // much better.
+  // The viewing rays of a pixel differ in any case; their hits need not be known much better than
+  // that.
   constexpr double most_viewing_rays = 4, part_of_rest = 0.05;
   const auto error = double(budget.error);
   const double left =
@@ -265,7 +269,8 @@ void cast_far_rays(const FarPointDraws& d, std::span<const uint32_t> members, co
                    RadianceBatch& out, Counters& counters) {
   const FarNumbers wanted = numbers_for(d, mean_light(d, members, seen), share, budget);
   const double most = share.seems_closed ? most_of_closed * double(budget.viewing_rays) : 1e30;
-  // What little gets into what seems closed is left to a pixel's first rays, as if much did.
+  // Where the scene seems closed, all light that enters is left to a pixel's first rays, as if much
+  // arrived.
   const double open = share.seems_closed ? 0.5 : share.open;
   counters.mixed += members.size();
   for (const uint32_t m : members)

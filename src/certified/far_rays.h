@@ -1,10 +1,10 @@
-// Light from infinity by rays alone, for hits that proofs are not worth: few of them, scattered, or
-// where most of the sky is open anyway. Points of the sky and of images, and of every sun, are
-// chosen by far_points.h, and a ray asks for each.
+// Environment light by shadow rays alone, for hits where proofs do not pay: few scattered hits, or
+// a mostly open sky. FarPoints (far_points.h) samples the sky, images and every sun.
 //
-// How many points a hit gets is decided by rays of its batch that count for nothing else, and for
-// the sky also by what has arrived at the hit from suns: where that is much, little of the error is
-// the sky's. Suns are asked first, by random numbers of their own: unbiased.
+// Pilot rays of the batch (far_pilots.h) decide how many samples a hit gets. The number of sky
+// samples also depends on the light that arrived from suns: where that is large, the sky
+// contributes little of the error. Suns come first and use random numbers of their own, so the
+// estimate is unbiased.
 #pragma once
 
 #include <cstdint>
@@ -15,37 +15,37 @@
 
 namespace troffer {
 
-// Points that wait for their rays: memory of one thread.
+// Samples whose shadow rays are pending: scratch memory of one thread.
 struct FarRays {
   struct Term {
-    Rgb light;         // that arrives if nothing is in the way
-    int32_t ray = -1;  // -1: none arrives
-    uint32_t member = 0;
+    Rgb light;            // unoccluded contribution
+    int32_t ray = -1;     // index in `rays`; -1: no contribution
+    uint32_t member = 0;  // index in the cluster
   };
   std::vector<Term> terms;
-  std::vector<size_t> runs;  // where terms of another pixel begin
+  std::vector<size_t> runs;  // start of each pixel in `terms`
   std::vector<Ray> rays;
   std::vector<uint8_t> is_occluded;
   PaneFactors factors;
   // Per member of the cluster.
-  std::vector<float> arrived;     // from suns and other sources, luminance × sr
-  std::vector<uint32_t> numbers;  // points
-  // Of a pixel, by the number of their parts.
+  std::vector<float> arrived;     // light of suns and other sources, luminance × sr
+  std::vector<uint32_t> numbers;  // largest number of sky samples
+  // Samples of one pixel, and the same sorted by part.
   std::vector<FarPoints::Choice> choices, sorted;
-  std::vector<uint32_t> of_choice, of_sorted;  // members
-  std::vector<uint32_t> first;                 // per part
+  std::vector<uint32_t> of_choice, of_sorted;  // cluster member of each sample
+  std::vector<uint32_t> first;                 // per part: start in `sorted`
   std::vector<FarPoints::Point> points;
   std::vector<Rgb> radiance;
-  // Of a hit.
+  // Random numbers of one hit.
   std::vector<uint64_t> streams;
   std::vector<uint32_t> samples;
   std::vector<float> uniform;
   FarPoints::Chances chances;
 };
 
-// Light of all far sources at each of `members`, with so many points that it errs by the budget's
-// error of the light that arrives, if the share holds. seen: per member, luminance × sr of what
-// other sources bring; empty: nothing.
+// Adds the light of all environment lights at each of `members`. The number of samples is chosen
+// for the budget's error relative to the light that arrives, as `share` predicts it. seen: per
+// member, luminance × sr received from other sources; empty: none.
 void cast_far_rays(const FarPointDraws& draws, std::span<const uint32_t> members,
                    const FarShare& share, std::span<const float> seen, const DrawingBudget& budget,
                    FarRays& memory, RadianceBatch& out, Counters& counters);

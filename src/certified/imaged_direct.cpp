@@ -45,7 +45,8 @@ void ImagedDirect::queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBa
       if (!wave.scatterings[i].has_diffuse) continue;
       if (mirror.above(wave.vertices[i].surface.position) <= mirror.tolerance) continue;
       Walk walk = wave.walks[i];
-      // Light that a mirror sends on has been reflected, and is drawn by numbers of its own.
+      // Light from a mirror has been reflected once, so it counts as indirect and uses its own
+      // random numbers.
       ++walk.scatterings;
       ++walk.vertex;
       walk.stream = hash_of(walk.stream, uint64_t{0x696d'6167}, uint64_t(m));

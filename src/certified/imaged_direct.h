@@ -1,6 +1,9 @@
-// Light straight from sources by one DirectLight, and what their images in flat mirrors send to the
-// diffuse parts of surfaces, by certified visibility in each mirror's own scene. The latter counts
-// as reflected light.
+// Direct light by one DirectLight, plus light that reaches diffuse surfaces by way of flat mirrors.
+// The latter is computed by certified visibility in each mirror's reflected scene, and counts as
+// indirect light.
+//
+// add_images() in methods/methods.cpp wraps the direct light in this class where the scene has flat
+// mirrors.
 #pragma once
 
 #include "certified/certified_direct.h"
@@ -10,7 +13,7 @@ namespace troffer {
 
 class ImagedDirect final : public DirectLight {
  public:
-  // occluders: of each image.
+  // occluders: one per mirror image.
   ImagedDirect(std::unique_ptr<DirectLight> straight, std::shared_ptr<const MirrorImages> images,
                const std::vector<std::shared_ptr<const Occluders>>& occluders,
                const CertifiedSettings& settings);
@@ -23,7 +26,7 @@ class ImagedDirect final : public DirectLight {
   void queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBatch& out,
              Counters& counters) const override;
   void flush(DirectLightScratch& scratch, RadianceBatch& out, Counters& counters) const override;
-  // What walks find in mirrors that gloss sent them to is theirs.
+  // Walks that glossy lobes send into mirrors count what they meet there themselves.
   void weigh(SeenEmission& seen) const override { straight_->weigh(seen); }
 
  private:

@@ -13,8 +13,8 @@ namespace troffer {
 
 namespace {
 
-// The sine of the largest angle between a normal and the unit vector `mean`, rounded up; 0 where
-// there is none, 1 where that is a right one.
+// Returns the sine of the largest angle between a normal and the unit vector `mean`, rounded up.
+// Returns 0 for equal normals, and 1 for an angle of 90° or more.
 float spread_about(const LightPrimitives& all, std::span<const uint32_t> primitives,
                    const Vec3d& mean) {
   double least = 1;
@@ -70,7 +70,7 @@ void LightGroups::Arrays::add(const Vec3& centre, float r, const Vec3& normal, f
 
 namespace {
 
-// Every third bit of the result is one of the ten of v.
+// Spreads the ten bits of v to every third bit of the result.
 uint32_t spread_bits(uint32_t v) {
   v = (v | v << 16) & 0x030000ffu;
   v = (v | v << 8) & 0x0300f00fu;
@@ -110,8 +110,8 @@ void LightGroups::finish() {
   take_together();
 }
 
-// Where their normals differ by a right angle or more, or some shine both ways, the light of all
-// goes all ways.
+// Merges neighbouring groups. A merged group emits in all directions if its normals differ by 90°
+// or more, or if a group of several emits both ways.
 void LightGroups::take_together() {
   const size_t n = size(), parts = std::min<size_t>(n, most_taken_together);
   for (size_t part = 0; part < parts; ++part) {
@@ -160,12 +160,12 @@ uint32_t LightGroups::choose_primitive(uint32_t group, float& u, float& pmf) con
 
 namespace {
 
-// Of the cosine that is largest in the ball, at least this much counts: it stands for receivers
-// that see more than the centre.
+// Smallest effective cosine, relative to the largest cosine within the balls. It accounts for
+// receivers that see more of the light than the ball's centre does.
 constexpr float least_of_cosine = 0.1f;
 
-// A group and the cluster's ball: the cosines are those of the centres, moved some way towards the
-// largest that anybody may see.
+// Estimates all groups for one ball. The cosines are those of the two centres, raised towards the
+// largest that any receiver may see.
 TROFFER_MULTIVERSION
 void estimate_all(size_t n, const float* __restrict x, const float* __restrict y,
                   const float* __restrict z, const float* __restrict radius,
@@ -183,7 +183,7 @@ void estimate_all(size_t n, const float* __restrict x, const float* __restrict y
     const float both = radius[i] + r;
     const float wide2 = d2 + 0.25f * both * both + 1e-30f;
     const float distance = std::sqrt(wide2);
-    // normals and heights are common to all receivers within rounding
+    // Normals and heights are common to all receivers only up to rounding.
     const float slack = 1e-4f * (distance + both);
     const float rise = is_flat > 0 ? bx * dx + by * dy + bz * dz : distance;
     const float top = rise + radius[i] + depth + slack;
@@ -191,7 +191,8 @@ void estimate_all(size_t n, const float* __restrict x, const float* __restrict y
     const float turned = two_sided[i] > 0 ? std::abs(along) : along;
     const float has_normal = nx[i] * nx[i] + ny[i] * ny[i] + nz[i] * nz[i];
     const float over = has_normal > 0 ? turned : distance;
-    // normals are at most `spread` off their mean, and points of the group then `radius` higher
+    // Normals differ from their mean by at most `spread`, and points of the group lie up to
+    // `radius` higher.
     const float sine = spread[i], cosine = std::sqrt(std::max(1 - sine * sine, 0.0f));
     const float rounded = sine > 0 ? sine * distance + radius[i] : 0.0f;
     const float far = over * cosine + rounded + r + slack;

@@ -1,9 +1,10 @@
-// The lights of a scene in pieces as they are chosen for a cluster of hits: a source of certified
-// visibility (both sides of it, or several that share a primitive) is one group, and so are a few
-// neighbouring triangles of a light that has no certificates.
+// The lights of a scene, divided into groups that are chosen for a cluster of hits
+// (drawn_lights.h). A group is one source of certified visibility: both sides of it, or several
+// parts that share a primitive. Lights without certificates are divided into groups of a few
+// neighbouring triangles.
 //
-// What each group may send to a cluster is estimated for all of them at a stroke, a few nanoseconds
-// for each: cheaper than any tree as long as there are some thousands.
+// LightGroups estimates the unoccluded light of all groups at a cluster in one vectorized pass.
+// That takes a few nanoseconds per group, less than a light tree for up to some thousand groups.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +16,8 @@
 
 namespace troffer {
 
-// A ball that holds a cluster's receivers; `normal`: the common one, or zero; `depth`: metres by
-// which, where there is one, they lie below the centre at most.
+// A ball that contains the receivers of a cluster. normal: their common normal, or zero if they
+// differ. depth: with a normal, metres by which receivers lie below the centre at most.
 struct ClusterBall {
   Vec3 centre;
   float radius = 0;
@@ -24,8 +25,8 @@ struct ClusterBall {
   float depth = 0;
 };
 
-// What of a source counts: its primitives, and the sources of certified visibility that cover them,
-// [first, last) in the caller's numbering; none where first == last.
+// Index ranges of a group's primitives, and of the sources of certified visibility that cover them.
+// [first_source, last_source) is in the caller's numbering, and empty if there are none.
 struct LightGroup {
   uint32_t first_source = 0, last_source = 0;
   uint32_t first_primitive = 0, last_primitive = 0;  // in LightGroups::primitives
@@ -33,39 +34,42 @@ struct LightGroup {
 
 class LightGroups {
  public:
-  // Primitives of one light, all with a surface, and which sources are made of them.
+  // Adds a group of primitives of one light, all with a surface, and the sources made of them.
   void add(const LightPrimitives& all, std::span<const uint32_t> primitives, uint32_t first_source,
            uint32_t last_source);
-  // After the last one: neighbours in space become neighbours in the order.
+  // Sorts the groups so that neighbours in space are neighbours in order. Call after the last
+  // add().
   void finish();
 
   uint32_t size() const { return uint32_t(groups_.size()); }
   bool have_all_sources() const { return with_sources_ == size(); }
-  // So many have certificates that not all of them should be asked for.
+  // True if so many groups have certificates that certifying all of them does not pay.
   bool are_many() const { return with_sources_ >= fewest_of_many; }
   const LightGroup& operator[](uint32_t group) const { return groups_[group]; }
-  // Of the group, in proportion to area by u in [0,1), which becomes uniform again; `pmf`: the
-  // probability of the choice.
+  // Chooses a primitive of the group in proportion to area by u in [0,1), and rescales u to be
+  // uniform again. pmf: the probability of the choice.
   uint32_t choose_primitive(uint32_t group, float& u, float& pmf) const;
 
-  // values[g]: about what group g sends to receivers in the ball, nothing hidden, luminance × sr; 0
-  // only where none of them can get any light. near[g]: the same where the group is nearer than
-  // four radii of the ball, else 0.
+  // values[g]: approximate unoccluded light of group g at receivers in the ball, luminance × sr. It
+  // is 0 only if no receiver can get any of its light. near[g]: the same if the group's centre is
+  // nearer than four ball radii, else 0.
   void estimate(const ClusterBall& ball, std::vector<float>& values,
                 std::vector<float>& near) const;
-  // What all of them send to a receiver at x of unit normal n, in the same unit, to a factor: it
-  // takes no longer for thousands of groups, of which neighbours are taken together.
+  // Approximate unoccluded light of all groups at a receiver x with unit normal n, luminance × sr.
+  // Neighbouring groups are merged, so the cost is bounded for any number of groups.
   float all_light(const Vec3& x, const Vec3& n) const;
 
  private:
+  // Number of certified groups from which lights count as many (docs/certified.md, "Many lights").
   static constexpr uint32_t fewest_of_many = 24;
+  // Number of merged groups that all_light() evaluates.
   static constexpr uint32_t most_taken_together = 64;
   struct Arrays {
-    std::vector<float> x, y, z, radius;  // of a ball about the group
-    std::vector<float> nx, ny, nz;       // unit mean of the normals, or zero …
-    std::vector<float> spread;           // … and the sine of the angle within which they differ
-    std::vector<float> two_sided;        // 1: shines both ways along its normal; else 0
-    std::vector<float> strength;  // luminance × area of one side, of a sphere that of its disk
+    std::vector<float> x, y, z, radius;  // bounding ball of the group
+    std::vector<float> nx, ny, nz;       // unit mean of the normals, or zero
+    std::vector<float> spread;           // sine of the largest angle to the mean normal
+    std::vector<float> two_sided;        // 1: emits both ways along its normal; else 0
+    std::vector<float> strength;         // luminance × area of one side; of a sphere's disk
     void add(const Vec3& centre, float r, const Vec3& normal, float sine, float both_sides,
              float light);
     size_t size() const { return x.size(); }
@@ -76,11 +80,12 @@ class LightGroups {
   static void estimate(const Arrays& groups, const ClusterBall& ball, float* values, float* near);
 
   Arrays arrays_;
-  Arrays together_;  // of neighbours
+  Arrays together_;  // merged neighbours, at most most_taken_together
   std::vector<LightGroup> groups_;
   uint32_t with_sources_ = 0;
   std::vector<uint32_t> primitives_;
-  std::vector<float> areas_;  // per entry of primitives_: sum over the group up to and with it
+  // per entry of primitives_: sum of the group's areas up to and including it
+  std::vector<float> areas_;
 };
 
 }  // namespace troffer

@@ -4,7 +4,7 @@
 
 namespace troffer {
 
-// Nothing hidden, luminance × sr.
+// Adds the unoccluded light of a source to group k at all receivers, luminance × sr.
 void LightShares::add_source(const CertifiedSource& source, size_t k) {
   if (source.is_round)
     unoccluded_light(cluster_, source.sphere, values_);
@@ -17,9 +17,10 @@ void LightShares::add_source(const CertifiedSource& source, size_t k) {
 void LightShares::set(const LightGroups& groups, std::span<const CertifiedSource> sources,
                       const WaitingHits& hits, std::span<const uint32_t> members,
                       std::span<const uint32_t> chosen, std::span<const float> estimates) {
-  // Of the estimate so much counts: closed forms are zero where rounding has them so.
+  // Share of the estimate that is added to the closed form, which may round to zero.
   constexpr float share_of_estimate = 0.01f;
-  // A curved lamp's pieces are thousands of groups: too many to go through for each hit.
+  // Limit for closed forms. A curved lamp has thousands of groups, too many to evaluate at each
+  // hit.
   constexpr size_t most_groups = 64;
   n_ = chosen.size();
   is_shared_ = groups.are_many() || n_ > most_groups;

@@ -1,6 +1,6 @@
-// How likely each hit of a cluster draws each light: in proportion to what that sends it if nothing
-// is in the way, in closed form where the lights are few. What a draw brings is then about the same
-// for all of them, however near some are to some of the hits.
+// Probabilities with which each hit of a cluster samples each light group (drawn_lights.h). They
+// are proportional to the group's unoccluded light at the hit, in closed form where lights are few.
+// All samples then have similar values, however close a light is to some of the hits.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,14 @@ namespace troffer {
 
 class LightShares {
  public:
-  // Of groups[chosen[k]] at each of `members`. estimates[k] > 0: what LightGroups::estimate has for
-  // the cluster; where lights or their pieces are many no more than that is looked at.
+  // Sets the shares of groups[chosen[k]] at each of `members`. estimates[k] > 0: the value of
+  // LightGroups::estimate() for the cluster. All members share the estimates alone if there are
+  // many lights or pieces.
   void set(const LightGroups& groups, std::span<const CertifiedSource> sources,
            const WaitingHits& hits, std::span<const uint32_t> members,
            std::span<const uint32_t> chosen, std::span<const float> estimates);
-  // Sums of the shares of the groups up to and with the k-th, for the i-th member; not zero.
+  // Returns the running sums of shares, up to and including each group, for the i-th member. Sums
+  // are positive.
   std::span<const float> sums(size_t i) const {
     return {sums_.data() + (is_shared_ ? 0 : i * n_), n_};
   }
@@ -28,9 +30,9 @@ class LightShares {
  private:
   void add_source(const CertifiedSource& source, size_t k);
 
-  size_t n_ = 0;  // groups
+  size_t n_ = 0;  // number of chosen groups
   bool is_shared_ = true;
-  std::vector<float> sums_;  // of one member after the other
+  std::vector<float> sums_;  // by member, then by group
   std::vector<ShadowReceiver> receivers_;
   ShadowCluster cluster_;
   std::vector<float> values_;

@@ -13,6 +13,8 @@ namespace troffer {
 
 namespace {
 
+// Random walks per batch and in total, and the segments of each: up to 32 768 rays towards
+// environment light.
 constexpr size_t walks_at_a_time = 512, most_walks = 8192;
 constexpr int most_segments = 4;
 
@@ -27,7 +29,7 @@ Vec3 cosine_direction(const Vec3& normal, const Vec2& u) {
          normal * std::sqrt(std::max(1 - u.x, 0.0f));
 }
 
-// Away from a light.
+// Returns a random ray that leaves a light.
 Ray first_ray(const LightPrimitive& p, Random& random) {
   Ray ray;
   if (p.has_surface() && p.shape != PrimitiveShape::sphere) {
@@ -44,11 +46,12 @@ Ray first_ray(const LightPrimitive& p, Random& random) {
   return ray;
 }
 
+// Random walks from lights, with a ray towards environment light at each hit.
 class Walks {
  public:
   Walks(const PreparedScene& scene, const FarPoints& points) : scene_(scene), points_(points) {}
 
-  // False: light from infinity has arrived.
+  // Returns false as soon as a ray finds environment light.
   bool are_closed(std::vector<Ray>& rays, Random& random) {
     std::vector<Hit> hits;
     std::vector<uint8_t> is_hidden;
@@ -68,7 +71,7 @@ class Walks {
   }
 
  private:
-  // Asks for light at the hit, and sends the ray on.
+  // Adds a ray towards environment light at the hit, and reflects the walk's ray.
   void go_on(Ray& ray, const Hit& hit, Random& random) {
     const Surface s = surface_at(scene_.scene, ray, hit);
     const Vec3& n = s.geometric_normal;

@@ -1,4 +1,6 @@
-// Whether light from infinity gets to where a scene's own lights shine.
+// Test of whether environment light reaches the surfaces that a scene's other lights shine on.
+// CertifiedLights uses it to recognize rooms that are closed, where certificates of sky patches
+// would be wasted.
 #pragma once
 
 #include "certified/far_points.h"
@@ -7,10 +9,11 @@
 
 namespace troffer {
 
-// True: of thousands of rays towards `points`, from surfaces that the scene's lights shine on
-// directly or by a few reflections, none arrives; what is inside `shells` is not asked for. Nothing
-// is proved: it tells where to look less closely. False where one arrives, which is soon found, or
-// where the scene has no light of its own. Deterministic.
+// Returns true if none of thousands of rays towards `points` arrives. The rays leave surfaces that
+// the scene's own lights reach directly or by up to three reflections; walks that start inside
+// `shells` are left out. This is evidence, not proof, and decides only where to spend less effort.
+// Returns false at the first ray that arrives, or if the scene has no lights of its own.
+// Deterministic.
 bool are_lit_places_closed(const PreparedScene& scene, const FarPoints& points,
                            const ClosedShells& shells);
 

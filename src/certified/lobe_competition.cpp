@@ -10,7 +10,7 @@ namespace troffer {
 
 namespace {
 
-// Points that a viewing ray's hit is taken to get of all lights that are drawn. Measured:
+// Nominal number of samples per viewing ray for all sampled lights together. Measured:
 // docs/cells.md, "Wide gloss seen from the side".
 constexpr float drawn_points = 4;
 
@@ -33,7 +33,7 @@ float LobeCompetition::density_of_drawn(float radiance, const LobePlace& at) con
 
 float LobeCompetition::density_of(const CertifiedSource& source, const LobePlace& at) const {
   if (source.far != nullptr) {
-    // Where its middle is about at the horizon, about half of it is above.
+    // A patch centred on the horizon is about half above it.
     const float half_width = std::sqrt(source.solid_angle * inv_pi_f) * 0.5f;
     const float cosine = std::max(dot(at.n, source.towards), half_width);
     const float projected = source.solid_angle * cosine;

@@ -1,6 +1,6 @@
-// Rough lobes send rays of their own, which compete with points of sources: a density of
-// directions, per sr, in which the latter are taken to be chosen. Close to what is done, and the
-// same whoever asks, which is all that multiple importance sampling needs.
+// Nominal density of source sampling, per sr, for multiple importance sampling against the rays
+// that rough lobes spawn. It only approximates the actual sampling. MIS needs no more than that
+// both techniques use the same density.
 #pragma once
 
 #include <cstdint>
@@ -13,29 +13,29 @@ class LightGroups;
 class PreparedScene;
 struct CertifiedSource;
 
-// A surface at x of unit geometric normal n.
+// A surface point x with unit geometric normal n.
 struct LobePlace {
   Vec3 x, n;
-  float all_light = 0;  // where lights are drawn: what all lights may send there
+  float all_light = 0;  // unoccluded light of all lights, where lights are sampled
 };
 
 class LobeCompetition {
  public:
-  // Each source is looked at, at so many points.
+  // Assumes `points` samples per source, as with certificates.
   LobeCompetition(const PreparedScene& scene, uint32_t points) : scene_(&scene), points_(points) {}
-  // … but for lights with a surface that are drawn, about in proportion to what they may send:
-  // there a direction is chosen by the light of a matte surface that comes from it, nothing hidden.
-  // So are those of no source, and, with are_sources_drawn, mostly all. The groups, of all such
-  // lights, must stay.
+  // Also covers sampled lights: directions are assumed to be chosen in proportion to the unoccluded
+  // light that a matte surface gets from them. This holds for primitives without sources and, with
+  // are_sources_drawn, for all sources but sky patches. `groups` must contain all such lights and
+  // outlive this object.
   LobeCompetition(const PreparedScene& scene, uint32_t points, const LightGroups& groups,
                   bool are_sources_drawn);
 
   LobePlace place(const Vec3& x, const Vec3& n) const;
-  // In the unit direction wi: density_of() × n · wi. What a cell at infinity sends is taken to come
-  // from its middle.
+  // density(): density in the unit direction wi, which is density_of() × n · wi. The light of a sky
+  // patch is taken to come from its centre.
   float density_of(const CertifiedSource& source, const LobePlace& at) const;
   float density(const CertifiedSource& source, const LobePlace& at, const Vec3& wi) const;
-  // Of points of a primitive of no source, which is drawn.
+  // Density for a sampled primitive that has no source.
   float density(uint32_t primitive, const LobePlace& at, const Vec3& wi) const;
 
  private:
@@ -43,7 +43,7 @@ class LobeCompetition {
 
   const PreparedScene* scene_;
   uint32_t points_;
-  const LightGroups* drawn_ = nullptr;  // null: no light is
+  const LightGroups* drawn_ = nullptr;  // null: no light is sampled
   bool are_sources_drawn_ = false;
 };
 

@@ -1,5 +1,5 @@
-// A scene as certified visibility sees it: candidates from the hierarchy of facets, rays from the
-// tracer.
+// The scene as certified visibility uses it: candidate occluders from the facet hierarchy, and rays
+// from the tracer.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace troffer {
 
-// Keeps memory between calls: one for each thread. The scene's structures must outlive it.
+// Holds scratch memory: use one object per thread. The scene's structures must outlive it.
 class ShadowWorld final : public ShadowScene {
  public:
   ShadowWorld(const Scene& scene, const Occluders& occluders, const Tracer& tracer);
@@ -22,7 +22,7 @@ class ShadowWorld final : public ShadowScene {
   void occluded(const SegmentArrays& segments, std::span<uint8_t> is_hidden) override;
   Quad facet(uint32_t id) const override { return occluders_.facet(id); }
   double magnitude() const override { return magnitude_; }
-  // Of the hierarchy, by all calls of candidates so far: for benchmarks.
+  // Hierarchy nodes visited by all calls of candidates(), for benchmarks.
   uint64_t visited_nodes() const { return visited_nodes_; }
 
  private:

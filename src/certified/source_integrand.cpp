@@ -66,7 +66,7 @@ Rgb low_variance_value(const GlossyHit& hit, const CertifiedSource& source, cons
         at(way, 1 / std::max(length_squared(way), 1e-300), sum, weights);
       }
   }
-  // Seen by an edge alone, it is at the horizon.
+  // A source with no point above the horizon is evaluated just above it.
   if (!(weights > 0)) at(Vec3d(hit.frame.normal) + Vec3d(hit.frame.tangent) * 10, 1, sum, weights);
   return sum * float(1 / weights);
 }
@@ -124,7 +124,7 @@ void SourceIntegrand::take_on_the_way(uint32_t request, const Vec3& receiver,
       values[i] *= left_on_the_way(request, receiver, points[i] - receiver);
 }
 
-// A pane that the receiver itself lies on does not count.
+// A pane that contains the receiver itself is skipped.
 Rgb SourceIntegrand::left_on_the_way(uint32_t request, const Vec3& receiver,
                                      const Vec3& way) const {
   if (portals_[request] != nullptr && !portals_[request]->shows(receiver, way)) return Rgb{0};
@@ -155,7 +155,7 @@ void to_local(const Frame& f, const Vec3& geometric, size_t n, const float* __re
   }
 }
 
-// Adds the rough part's share that is left to points of a source: power_heuristic().
+// Adds the rough part times its MIS weight, power_heuristic().
 TROFFER_MULTIVERSION
 void add_rough(float density, size_t n, const float* __restrict above, const float* __restrict pdf,
                const float* __restrict r, const float* __restrict g, const float* __restrict b,
@@ -175,7 +175,7 @@ void multiply(const float* __restrict by, size_t n, float* __restrict values) {
   for (size_t i = 0; i < n; ++i) values[i] *= by[i];
 }
 
-// Times radiance, over the cosine; 0 below either horizon.
+// Multiplies by radiance / cosine; 0 below either horizon.
 TROFFER_MULTIVERSION
 void scale_all(const Rgb& radiance, size_t n, const float* __restrict z,
                const float* __restrict above, float* __restrict r, float* __restrict g,
@@ -188,11 +188,12 @@ void scale_all(const Rgb& radiance, size_t n, const float* __restrict z,
   }
 }
 
-// Gloss is gentle over sources no wider than this many lobes. Measured: docs/certified.md. So is
-// all that is gathered, since rays that look for sources take over where it is not.
+// Largest width of a source, in lobe widths, for which gloss has low variance. Measured:
+// docs/certified.md. Gathered gloss always counts as low-variance, since spawned rays handle its
+// peaks.
 constexpr float sources_in_lobe = 2;
 
-// Width of a source over its distance from x; without bound where x may be in it.
+// Returns the width of a source divided by its distance from x; very large if x may lie inside it.
 float angular_width(const CertifiedSource& source, const Vec3& x) {
   if (source.is_round) {
     const double distance = length(source.sphere.centre - Vec3d(x));
@@ -204,8 +205,8 @@ float angular_width(const CertifiedSource& source, const Vec3& x) {
   return float(width / std::max(distance - 0.5 * width, 1e-30));
 }
 
-// Directions in the lobe are as far apart, about, as twice the normals of its facets; across the
-// plane of incidence less, by the cosine.
+// Approximate angular width of the lobe: twice the spread of its microfacet normals, narrowed by
+// the cosine across the plane of incidence.
 float lobe_width(const GlossyHit& g) {
   return 2 * glossy_alpha(g.rough) * std::max(g.wo.z, 0.0f);
 }
@@ -253,7 +254,7 @@ void SourceIntegrand::multiply_by_radiance(const CertifiedSource& source, const 
     p.b.assign(n, source.radiance.b);
     return;
   }
-  if (!varies) return;  // the surface's part has it
+  if (!varies) return;  // evaluate_gloss() has included the radiance
   far_values_.resize(3 * n);
   float* const r = far_values_.data();
   far_radiance(*source.far, n, p.x.data(), p.y.data(), p.z.data(), r, r + n, r + 2 * n);
@@ -290,7 +291,7 @@ void SourceIntegrand::multiply_by_web(const CertifiedSource& source, const Integ
   for (auto* a : {&p.r, &p.g, &p.b}) multiply(far_values_.data(), p.size(), a->data());
 }
 
-// Of a source whose radiance varies what the surface does with it alone.
+// Sets the BRDF per unit of projected solid angle, times the radiance if it is uniform.
 void SourceIntegrand::evaluate_gloss(const CertifiedSource& source, const IntegrandHit& hit,
                                      PointArrays& p) {
   const GlossyHit& g = *hit.glossy;

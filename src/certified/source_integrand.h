@@ -1,5 +1,6 @@
-// What one source sends on to the eye by way of each hit of a cluster: radiance × BRDF, for
-// surfaces that are not matte and for sources whose radiance varies.
+// Integrand of certified visibility: radiance of a source × BRDF of a hit, per unit of projected
+// solid angle. It is needed for hits that are not matte and for sources whose radiance varies.
+// CertifiedLights sets it up for each cluster.
 #pragma once
 
 #include <cstdint>
@@ -16,25 +17,25 @@
 
 namespace troffer {
 
-// A source as certified visibility treats it whole: a flat piece of a light, several of them
-// merged, or a sphere.
+// One source of certified visibility: a flat piece of a light, several pieces merged, a sphere, or
+// a sky patch.
 struct CertifiedSource {
   bool is_round = false;
   FlatSource flat;
   SphereSource sphere;
-  Rgb radiance;  // mean, where it varies
-  // A triangle with texture coordinates, a web's opening, or a far cell that is not even
+  Rgb radiance;  // mean radiance where it varies
+  // True for a textured triangle, the opening of a photometric web, or a non-uniform sky patch.
   bool is_textured = false;
-  bool is_by_web = false;  // varies by direction alone
-  bool is_back = false;    // the light is seen from its back
-  uint32_t primitive = 0;  // (one) of LightPrimitives
+  bool is_by_web = false;  // radiance varies by direction only
+  bool is_back = false;    // the back of a two-sided light
+  uint32_t primitive = 0;  // index in LightPrimitives; the first of several
   uint64_t stream = 0;
-  const FarCell* far = nullptr;  // of a light at infinity; it has `radiance`, or varies
-  Vec3 towards;                  // … its middle, and how large it is, sr
-  float solid_angle = 0;
+  const FarCell* far = nullptr;  // sky patch of an environment light; else null
+  Vec3 towards;                  // unit direction from the scene's centre to the patch's
+  float solid_angle = 0;         // of the sky patch, sr
 
   Box bounds() const;
-  // Projected solid angle from x with unit normal n, nothing hidden, sr.
+  // Projected solid angle at x with unit normal n, unoccluded, sr.
   double unoccluded(const Vec3d& x, const Vec3d& n) const;
 };
 
@@ -43,52 +44,55 @@ struct GlossyHit {
   Frame frame;
   Vec3 wo;
   LobePlace place;
-  Bsdf diffuse, rough;  // the second competes with spawned rays
+  Bsdf diffuse, rough;  // `rough` competes with spawned rays (MIS)
   bool has_diffuse = false, has_rough = false;
-  bool is_low_variance = false;  // SurfaceScattering; not rough
-  // What a lobe's rays bring otherwise is gathered: they look for sources alone.
+  bool is_low_variance = false;  // SurfaceScattering::is_low_variance; not rough
+  // Gathered gloss (SurfaceScattering::is_gathered): spawned rays look for sources only.
   bool is_gathered = false;
 };
 
-// BRDF × cosine towards the unit direction wi in the world: the diffuse part, and the share of the
-// rough one that is left to points of a source, `density` being LobeCompetition::density().
+// Returns BRDF × cosine towards the unit world direction wi: the diffuse part, plus the rough part
+// times its MIS weight. density: LobeCompetition::density() at wi.
 Rgb glossy_value(const GlossyHit& hit, const Vec3& wi, float density);
 
-// BRDF at x for light from a source, the mean over four points of it or, of a sphere, at its
-// middle: for hits that are gentle.
+// Returns the mean BRDF at x for light from a source, over four of its points, or at a sphere's
+// centre. For hits with is_low_variance.
 Rgb low_variance_value(const GlossyHit& hit, const CertifiedSource& source, const Vec3& x);
 
-// Hits of the cluster as the integrand sees them.
+// A hit of the cluster as the integrand uses it.
 struct IntegrandHit {
   Vec3 position;
-  const GlossyHit* glossy = nullptr;  // null: matte, and the value is the radiance alone
+  const GlossyHit* glossy = nullptr;  // null: matte, and the value is the radiance
 };
 
-// Memory for many directions at a glossy hit.
+// Scratch memory for many directions at a glossy hit.
 struct GlossyLanes {
-  std::vector<float> x, y, z;       // local, unit
+  std::vector<float> x, y, z;       // local unit directions
   std::vector<float> above;         // cosine with the geometric normal
-  std::vector<float> r, g, b, pdf;  // of the rough part
+  std::vector<float> r, g, b, pdf;  // rough part only
   void resize(size_t n) {
     for (auto* a : {&x, &y, &z, &above, &r, &g, &b, &pdf}) a->resize(n);
   }
 };
 
+// Evaluates the integrand for one cluster at a time. Set hits(), sources(), behind_panes() and
+// portals() before each cluster. One object per thread, because it holds scratch memory.
 class SourceIntegrand final : public ShadowIntegrand {
  public:
-  // points: at how many points a source is looked at.
+  // points: number of points per source at which gloss and textures are evaluated.
   SourceIntegrand(const PreparedScene& scene, uint32_t points, const LobeCompetition& competition)
       : scene_(scene), points_(points), competition_(competition) {}
 
-  // The cluster at hand: its hits, and its requests' sources, which must stay where they are.
+  // The current cluster's hits, and the sources of its requests, which must not move.
   std::vector<IntegrandHit>& hits() { return hits_; }
   std::vector<const CertifiedSource*>& sources() { return sources_; }
-  // Per source: panes that may lie between it and the hits. Empty: the scene has none.
+  // Per request: panes that may lie between the source and the hits. Empty if the scene has no
+  // panes.
   std::vector<PanesBetween>& behind_panes() { return behind_panes_; }
-  // Per request: what its light comes through alone, of which not all hits may see all of the
-  // source; mostly null.
+  // Per request: the portal that hides part of the source from some hits; mostly null.
   std::vector<const Portal*>& portals() { return portals_; }
 
+  // True if the member needs a value from this source, not visibility alone.
   bool is_wanted(uint32_t request, uint32_t member) const {
     return varies(request) || hits_[member].glossy != nullptr;
   }
@@ -119,11 +123,12 @@ class SourceIntegrand final : public ShadowIntegrand {
   void multiply_by_web(const CertifiedSource& source, const IntegrandHit& hit, PointArrays& points);
   void take_on_the_way(uint32_t request, const Vec3& receiver, std::span<const Vec3> points,
                        std::span<Rgb> values) const;
-  // By panes and portals.
+  // True if panes or a portal reduce the light on its way.
   bool is_taken_on_the_way(uint32_t request) const {
     return is_behind_panes(request) || portals_[request] != nullptr;
   }
-  // To the receiver, from so far away.
+  // Share of the light that panes and portals leave on the way from the receiver along the vector
+  // `way`.
   Rgb left_on_the_way(uint32_t request, const Vec3& receiver, const Vec3& way) const;
 
   const PreparedScene& scene_;

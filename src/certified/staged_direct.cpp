@@ -17,7 +17,7 @@ StagedDirect::StagedDirect(std::unique_ptr<DirectLight> first, std::unique_ptr<D
   TROFFER_CHECK(first_->walked_part() == later_->walked_part());
 }
 
-// Hits of `wave` that the first is for, or those that it is not for.
+// Copies to `out` the hits of `wave` that first_ lights, or those that later_ lights.
 void StagedDirect::take(const WaveHits& wave, bool first, WaveHits& out) const {
   out.clear();
   out.viewing = wave.viewing;
@@ -59,7 +59,7 @@ void StagedDirect::flush(DirectLightScratch& scratch, RadianceBatch& out,
   later_->flush(*s.later, out, counters);
 }
 
-// Emission that was run into competes with the samples of who lit the vertex before.
+// Emission that a walk hit is weighted by the DirectLight that lit the walk's previous vertex.
 void StagedDirect::weigh(SeenEmission& seen) const {
   if (std::all_of(seen.walks.begin(), seen.walks.end(),
                   [&](const Walk* w) { return is_first(*w, 1); }))

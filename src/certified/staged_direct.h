@@ -1,6 +1,6 @@
-// Light straight from sources at first surfaces by one DirectLight, and at what these show in gloss
-// by another, which may be rougher: it arrives weaker, and mixed. So does that of a pixel's further
-// samples, each of which is a small part of it.
+// Direct light by two DirectLights. `first` lights the first surfaces of a pixel's first samples.
+// `later` lights what these surfaces reflect, and all of a pixel's further samples. It may be less
+// accurate, because its light is attenuated and averaged.
 #pragma once
 
 #include "transport/direct_light.h"
@@ -9,7 +9,7 @@ namespace troffer {
 
 class StagedDirect final : public DirectLight {
  public:
-  // Of the same walked_part(). samples: of a pixel that are not further ones.
+  // Both must have the same walked_part(). samples: number of first samples of a pixel.
   StagedDirect(std::unique_ptr<DirectLight> first, std::unique_ptr<DirectLight> later,
                uint32_t samples);
 

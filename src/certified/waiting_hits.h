@@ -1,5 +1,5 @@
-// Hits on their way through certified visibility: those that wait, the cluster of them that is lit
-// at a time, and how its answers are counted.
+// The hits of a wave that wait for certified visibility, and the cluster of them that is being lit.
+// Used by CertifiedLights.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +11,23 @@
 
 namespace troffer {
 
-// Hits that wait for light: plain arrays of one length.
+// Hits that wait for light, as arrays of equal length (except glossy_hits).
 struct WaitingHits {
   std::vector<ShadowReceiver> receivers;
-  std::vector<Vec3> positions, horizons;  // of the receivers, as clustering wants them
-  std::vector<Rgb> weights;               // throughput, times reflectance / pi of matte surfaces
+  std::vector<Vec3> positions, horizons;  // of the receivers, for clustering
+  std::vector<Rgb> weights;               // throughput; times reflectance / pi at matte hits
   std::vector<uint32_t> indices;          // of the viewing rays
-  std::vector<uint64_t> pixels;           // names of their pixels
-  std::vector<uint32_t> samples;          // … and which of its viewing rays
-  std::vector<uint64_t> draw_streams;     // of the random numbers that choose lights
+  std::vector<uint64_t> pixels;           // hash of the pixel
+  std::vector<uint32_t> samples;          // sample number within the pixel
+  std::vector<uint64_t> draw_streams;     // random streams for light sampling
   std::vector<int32_t> glossy;            // index into glossy_hits, or -1: matte
-  std::vector<uint8_t> is_direct;         // the light counts as direct
-  std::vector<uint8_t> is_first;          // the viewing ray's first surface
+  std::vector<uint8_t> is_direct;         // 1: the light counts as direct
+  std::vector<uint8_t> is_first;          // 1: first surface of the viewing ray
   std::vector<GlossyHit> glossy_hits;
 
   size_t size() const { return receivers.size(); }
   void clear();
-  // A hit at v; the light counts as direct or not.
+  // Adds a hit at v. direct: its light counts as direct light.
   void add_matte(const Walk& walk, const Vertex& v, Rgb reflectance, bool direct);
   void add_glossy(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering,
                   const LobeCompetition& competition, bool direct);
@@ -36,7 +36,7 @@ struct WaitingHits {
   void add(const Walk& walk, const Vertex& v, const Rgb& weight, bool direct);
 };
 
-// A pair of hit and source, by how it was answered, and its rays.
+// Counts the answer for a pair of hit and source, and its rays.
 inline void count_answer(const SourceVisibility& a, Counters& counters) {
   counters.shadow_rays += a.rays;
   counters.lit_certified += a.answer == ShadowAnswer::lit ? 1 : 0;
@@ -45,7 +45,7 @@ inline void count_answer(const SourceVisibility& a, Counters& counters) {
   counters.mixed += a.answer == ShadowAnswer::mixed ? 1 : 0;
 }
 
-// The cluster at hand, as certified_light() takes it, and the memory that this works in.
+// The current cluster in the form that certified_light() takes, and its scratch memory.
 struct CertifiedCluster {
   std::vector<ShadowReceiver> receivers;
   ShadowCluster shadow;  // of the receivers

@@ -1,4 +1,5 @@
-// atan2 for the upper half plane, several times faster than the library's.
+// Fast arctangent for the upper half plane, and fast sine and cosine. Both are branch-free, so that
+// loops over them vectorize; light sampling and closed-form irradiance use them.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +12,13 @@
 
 namespace troffer {
 
-// Angle of (x, y), y >= 0, in [0, pi]; relative error under 2e-7 in float, 1e-15 in double. (0,0)
-// gives 0. After folding the plane to |t| <= tan(pi/8), atan(t)/t is a polynomial in t²: Chebyshev
-// interpolation, degrees chosen for the type's rounding.
+// Returns the angle of (x, y), y >= 0, in [0, pi]; 0 for (0,0). Relative error below 2e-7 in float,
+// 1e-15 in double. After folding to |t| <= tan(pi/8), atan(t)/t is a polynomial in t². The
+// coefficients come from Chebyshev interpolation, of a degree that matches the type's rounding.
 template <class T>
 TROFFER_ALWAYS_INLINE T upper_angle(T y, T x) {
   const T ax = std::abs(x), high = std::max(ax, y), low = std::min(ax, y);
-  // choices as factors 0 or 1: which way they go cannot be predicted, and loops can be vectorised
+  // Factors of 0 or 1 replace branches, which would be unpredictable and prevent vectorization.
   const T is_steep = T(low > T(0.41421356237309505) * high);
   const T t =
       (low - is_steep * high) / std::max(high + is_steep * low, std::numeric_limits<T>::min());
@@ -30,7 +31,7 @@ TROFFER_ALWAYS_INLINE T upper_angle(T y, T x) {
     p = p * z - 0.33332786f;
     p = p * z + 0.99999998f;
   } else {
-    const double zz = z * z;  // even and odd powers apart: shorter chains
+    const double zz = z * z;  // even and odd powers apart, for shorter dependency chains
     const double even =
         ((((0.037965257453865936 * zz + 0.058468782973308725) * zz + 0.076920453309022250) * zz +
           0.11111110744919658) *
@@ -53,9 +54,9 @@ TROFFER_ALWAYS_INLINE T upper_angle(T y, T x) {
   return is_left * T(pi) + (1 - 2 * is_left) * right;
 }
 
-// Sine and cosine of an angle in [0, 2 pi]; in float by polynomials (Chebyshev interpolation,
-// absolute error under 2e-7) that loops over them vectorise.
-// Of no number, which loops without branches may bring along, they are those of 0.
+// Sine and cosine of an angle in [0, 2 pi]. In float they are polynomials from Chebyshev
+// interpolation, with an absolute error below 2e-7. A NaN, which branch-free loops may pass, gives
+// the values at 0.
 TROFFER_ALWAYS_INLINE void sine_cosine(float any, float& sine, float& cosine) {
   const float angle = std::min(float(2 * pi), std::max(0.0f, any));
   const float quarter = float(int(angle * float(2 / pi) + 0.5f));

@@ -6,12 +6,13 @@ namespace troffer {
 
 namespace {
 
-// Edges of cells along an axis of n texels: 0, the centres, 1.
+// Position of the i-th cell edge along an axis of n texels: 0, the texel centres, 1.
 float edge(int i, int n) {
   return i <= 0 ? 0 : i > n ? 1 : (float(i) - 0.5f) / float(n);
 }
 
-// t in [0,1] with density in proportion to the line from a to b (not both 0), and back.
+// sample_line() returns t in [0,1] with density proportional to the line from a to b, which must
+// not both be 0. invert_line() is its inverse.
 float sample_line(float a, float b, float u) {
   const float root = std::sqrt(lerp(a * a, b * b, u));
   const float t = u * (a + b) / (a + root);
@@ -21,7 +22,7 @@ float invert_line(float a, float b, float t) {
   return t * (2 * a + (b - a) * t) / (a + b);
 }
 
-// Index i with cdf[i] <= u < cdf[i + 1], and u within that step.
+// Returns the index i with cdf[i] <= u < cdf[i + 1], and rescales u to that step.
 int choose(const float* cdf, size_t n, float& u) {
   const float* next = std::upper_bound(cdf, cdf + n + 1, u);
   const auto i = std::clamp<ptrdiff_t>(next - cdf - 1, 0, ptrdiff_t(n) - 1);
@@ -30,7 +31,7 @@ int choose(const float* cdf, size_t n, float& u) {
   return int(i);
 }
 
-// Sums of `weights` over their total, ending with 1; returns the total.
+// Sets cdf to the running sums of `weights` over their total, ending with 1. Returns the total.
 double fill_cdf(const std::vector<double>& weights, float* cdf) {
   double total = 0;
   for (const double w : weights) total += w;
@@ -40,7 +41,7 @@ double fill_cdf(const std::vector<double>& weights, float* cdf) {
     sum += weights[i];
     cdf[i + 1] = total > 0 ? float(sum / total) : 1.0f;
   }
-  // Rounding must not open a last step that holds nothing.
+  // A last step of weight zero must have zero width in spite of rounding.
   for (size_t i = weights.size(); i > 0 && total > 0; --i) {
     cdf[i] = 1;
     if (weights[i - 1] > 0) break;
@@ -60,7 +61,7 @@ DirectionTable::DirectionTable(SphereMap map, int width, int height,
   };
   for (int j = 0; j <= height + 1; ++j)
     for (int i = 0; i <= width + 1; ++i) {
-      // An edge lies half way between the texels on both of its sides.
+      // A node on the square's edge lies midway between texels on both sides of it.
       const int x0 = i == 0 ? -1 : i - 1, x1 = i == 0 ? 0 : i == width + 1 ? width : i - 1;
       const int y0 = j == 0 ? -1 : j - 1, y1 = j == 0 ? 0 : j == height + 1 ? height : j - 1;
       const int xa = i == width + 1 ? width - 1 : x0, ya = j == height + 1 ? height - 1 : y0;
@@ -107,12 +108,12 @@ DirectionTable::Cell DirectionTable::cell_at(const Vec2& uv) const {
   return c;
 }
 
-// Luminance over its integral, per area of the square, then per steradian.
+// Luminance divided by its integral, per unit of the square's area, then per steradian.
 float DirectionTable::pdf_at(const Cell& c, const Vec2& uv) const {
   const Corners n = corners(c);
   const float luminance =
       lerp(lerp(n.at00, n.at10, c.place.x), lerp(n.at01, n.at11, c.place.x), c.place.y);
-  // The pole itself is a point of no area: any finite density does.
+  // The pole has no area, so any finite density will do.
   const float steradians = std::max(solid_angle_per_area(map_, uv.y), 1e-6f);
   return float(double(luminance) * double(row_factors_[size_t(c.y)]) /
                (double(steradians) * integral_));

@@ -1,4 +1,4 @@
-// Parallel light from infinity, such as a sun without size.
+// Parallel light from infinity, such as a sun without size. One of the light kinds behind light.h.
 #pragma once
 
 #include "base/units.h"
@@ -10,7 +10,7 @@ struct DistantLight : NoSurface {
   static void bound(const Scene&, const Light& e, const Box& bounds, LightPrimitive& p) {
     p.shape = PrimitiveShape::infinite;
     p.mean_radiance = e.radiance;
-    // What enters a sphere around the scene.
+    // Power that enters a sphere around the scene.
     p.power = p.tree_power = pi_f * sqr(0.5f * bounds.diagonal()) * luminance(e.radiance);
     p.cone_axis = e.direction;
     p.cos_cone = 1;

@@ -1,4 +1,5 @@
-// Images of environments: radiance by direction, and the table by which they are sampled.
+// Radiance of an environment image by direction, and the table for sampling it. Used by environment
+// and point lights.
 #pragma once
 
 #include <memory>
@@ -8,8 +9,9 @@
 
 namespace troffer {
 
-// Bilinear between texel centres, across the edges of the square as the sphere goes on.
+// Bilinear between texel centres, and continuous across the square's edges where the sphere is.
 Rgb radiance_towards(const EnvironmentMap& map, const Vec3& w);
+// Returns the table for sampling directions in proportion to the image's luminance.
 
 DirectionTable direction_table(const EnvironmentMap& map);
 

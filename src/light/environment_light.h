@@ -1,4 +1,5 @@
-// What comes from everywhere beyond the scene: the same radiance, or an image of it.
+// Light from everywhere beyond the scene: of uniform radiance, or given by an image. One of the
+// light kinds behind light.h.
 #pragma once
 
 #include "base/units.h"
@@ -15,16 +16,16 @@ struct EnvironmentLight : NoSurface {
         direction_table(scene.environments[size_t(e.environment)]));
   }
 
-  // Through a sphere of radius R around the scene enters pi R² times the integral of the radiance
-  // over all directions.
+  // The power through a sphere of radius R around the scene is pi R² times the integral of the
+  // radiance over all directions.
   static void bound(const Scene&, const Light& e, const Box& bounds, LightPrimitive& p) {
     p.shape = PrimitiveShape::infinite;
     const float mean = p.directions ? float(p.directions->integral() / (4 * pi)) : 1;
     p.mean_radiance = e.radiance * mean;
     p.power = p.tree_power = sqr(pi_f * bounds.diagonal()) * luminance(p.mean_radiance);
   }
-  // All directions, since the receiver may transmit light from behind: uniformly, or in proportion
-  // to the image.
+  // Samples all directions, since the receiver may transmit light from behind: uniformly, or in
+  // proportion to the image.
   static bool sample(const Scene& scene, const LightPrimitive& p, const Vec3& /*x*/, const Vec2& u,
                      LightSample& out) {
     const Light& e = scene.lights[p.light];

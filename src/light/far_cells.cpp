@@ -14,27 +14,25 @@ namespace troffer {
 
 namespace {
 
-// Half an edge of the cube, in radii of the scene; 256 radii off, directions to it err by 2^-18.
+// Half the cube's edge length in scene radii. From 256 radii away, directions err by 2^-18.
 constexpr double cube_in_radii = 0x1p26;
-// A polynomial may be off by so much of the cell's mean radiance, or by so much of all the light's
-// integral over the cell.
+// Allowed error of a fit, relative to the patch's mean radiance, or to the light's integral.
 constexpr double fit_error = 1e-4, fit_error_of_all = 1e-5;
-// A cell is halved until the samples of a coarse mask, thrown at random, would err by less than
-// this share of all light, but for what is smooth: then they err by much less.
+// A patch is halved until randomly placed samples of a coarse mask (178 of them) would err by less
+// than this share of all light.
 constexpr double table_error = 1e-3, samples_of_mask = 178;
-// Of the faces beside a portal's, what lies nearer to its plane is a cell of its own: where rays
-// meet that far away.
+// On the faces beside a portal's, the strip up to this height over the portal's plane is a patch of
+// its own. Rays meet the plane very far away there.
 constexpr double near_plane = 0.125;
 
-// Where the radiance is looked at for the fit: nodes of Chebyshev's.
+// Nodes of the fit: Chebyshev nodes in [0,1].
 constexpr double chebyshev_nodes[4] = {
     0.5 - 0.5 * 0.92387953251128674, 0.5 - 0.5 * 0.38268343236508977,
     0.5 + 0.5 * 0.38268343236508977, 0.5 + 0.5 * 0.92387953251128674};
-// … and where the fit is held against it; not on the very edge, beyond which lies the ground.
+// Positions where the fit is checked. They avoid the edges, because the ground may begin there.
 constexpr double checks[6] = {1e-4, 0.13, 0.31, 0.5, 0.77, 1 - 1e-4};
 
-// A face of the cube, in units of its distance: directions axis + a across + b up, a and b in
-// [-1,1].
+// A face of the cube: directions axis + a across + b up, with a and b in [-1,1].
 struct Face {
   Vec3d axis, across, up;
 };
@@ -46,11 +44,11 @@ struct Square {
   }
 };
 
-// Row i makes the coefficient of t^i of values at the nodes.
+// Returns the matrix whose row i gives the coefficient of t^i from the values at the nodes.
 std::array<std::array<double, 4>, 4> coefficients_of_values() {
   std::array<std::array<double, 4>, 4> m{};
   for (size_t n = 0; n < 4; ++n) {
-    std::array<double, 4> c{1, 0, 0, 0};  // of the product of (t - t_k) / (t_n - t_k)
+    std::array<double, 4> c{1, 0, 0, 0};  // coefficients of the product of (t - t_k) / (t_n - t_k)
     size_t degree = 0;
     for (size_t k = 0; k < 4; ++k) {
       if (k == n) continue;
@@ -70,7 +68,7 @@ float value_at(const FarPolynomial& c, float u, float v) {
   return sum;
 }
 
-// Cuts one light.
+// Cuts one light into patches.
 class Cutter {
  public:
   Cutter(const Scene& scene, const LightPrimitives& primitives, uint32_t primitive,
@@ -88,7 +86,7 @@ class Cutter {
 
   void cut_faces(std::vector<std::unique_ptr<const FarTable>>& tables) {
     if (is_even() && piece_.portal != nullptr) return cut_before_portal();
-    // The horizon of a sky is to run along edges of cells.
+    // Aligns the cube so that a sky's horizon runs along edges of patches.
     const Vec3d z = normalize(Vec3d(light_.axes[2]));
     const Vec3d other = std::abs(z.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 0, 1};
     const Vec3d x = normalize(other - z * dot(other, z)), y = cross(z, x);
@@ -107,7 +105,7 @@ class Cutter {
       }
   }
 
-  // Of an even light: what may come through a portal, in cells whose edges lie in its plane.
+  // Adds a uniform light's patches that its portal may show. Edges lie in the portal's plane.
   void cut_before_portal() {
     const auto [x, y, z] = piece_.portal->axes();
     add_even({z, x, y}, -1, 1, -1, 1);
@@ -151,7 +149,7 @@ class Cutter {
     return cell;
   }
 
-  // From (a0, b0) to (a1, b1) of the face.
+  // Adds a uniform patch from (a0, b0) to (a1, b1) of the face.
   void add_even(const Face& f, double a0, double a1, double b0, double b1) {
     const double width = (a1 - a0) * distance_, height = (b1 - b0) * distance_;
     FarCell cell;
@@ -172,14 +170,14 @@ class Cutter {
     return radiance_beyond(scene_, light_, Vec3(normalize(direction)));
   }
 
-  // As fine as an image's texels, as far as memory allows; each value the mean of some.
+  // Returns a table of means, as fine as the image's texels within limits of memory.
   std::unique_ptr<const FarTable> table_of(const Face& f) const {
-    int texels = 128, each = 1;  // along a face's edge; looked at for a value, in either direction
+    int texels = 128, each = 1;  // texels along a face's edge; lookups per value and direction
     if (const EnvironmentMap* map = image())
       texels = map->projection == SphereMap::lat_long ? map->width / 4 : map->width / 2;
     auto table = std::make_unique<FarTable>();
     table->size = int(std::bit_ceil(unsigned(std::clamp(texels, 128, 512))));
-    // Between texels an image is bilinear: a bright one is a hat, which a few values must not miss.
+    // A bright texel is a narrow peak, which too few bilinear lookups would miss.
     each = std::clamp((texels + table->size - 1) / table->size,
                       image() == nullptr  ? 1
                       : table->size > 256 ? 2
@@ -202,7 +200,7 @@ class Cutter {
     return table;
   }
 
-  // The square is the part of the table from (x,y) on, n × n.
+  // Cuts a square of the face, which covers n × n table entries from (x,y) on.
   void cut(const Face& f, const Square& s, int x, int y, int n) {
     FarCell cell = cell_of(f, s);
     cell.table = table_;
@@ -227,12 +225,13 @@ class Cutter {
   }
 
   struct Spread {
-    double deviation = 0, steradians = 0;  // standard, of luminance, from the mean or the fit
-    float most = 0;                        // of any component
+    // standard deviation of luminance from the mean or the fit
+    double deviation = 0, steradians = 0;
+    float most = 0;  // largest colour component
     bool is_even = true;
   };
 
-  // Of the fit's cell; sets its mean too.
+  // Sets the patch's mean and unevenness, and returns the spread. Precondition: the fit is set.
   Spread look_at_table(const Face& f, const Square& s, FarCell& cell) const {
     Spread spread;
     double r = 0, g = 0, b = 0, squares = 0, from_fit = 0, weights = 0;
@@ -272,7 +271,7 @@ class Cutter {
         {value_at(c.fit[0], u, v), value_at(c.fit[1], u, v), value_at(c.fit[2], u, v)});
   }
 
-  // An image may hold what nodes pass by; it has no polynomials.
+  // Always false for images, which may hold detail between the nodes.
   bool is_fitted(const Face& f, const Square& s, const FarCell& cell, double steradians) const {
     if (image() != nullptr) return false;
     double worst = 0;
@@ -310,9 +309,9 @@ class Cutter {
   uint32_t primitive_;
   Vec3d centre_;
   double distance_;
-  double all_ = 0;  // the luminance's integral over all directions
+  double all_ = 0;  // integral of the luminance over all directions
   std::array<std::array<double, 4>, 4> matrix_;
-  const FarTable* table_ = nullptr;  // of the face at hand
+  const FarTable* table_ = nullptr;  // of the current face
   std::vector<FarCell>& out_;
 };
 
@@ -381,14 +380,14 @@ FarCells::FarCells(const Scene& scene, const LightPrimitives& primitives) {
 void far_radiance(const FarCell& cell, size_t n, const float* x, const float* y, const float* z,
                   float* r, float* g, float* b) {
   if (cell.table != nullptr) return look_up(cell, n, x, y, z, r, g, b);
-  constexpr size_t few = 8;  // for which vectors are not worth while
+  constexpr size_t few = 8;  // for fewer points, vectorization does not pay
   if (n < few && cell.is_grey) {
     for (size_t i = 0; i < n; ++i)
       r[i] = g[i] = b[i] = evaluate_fit(cell, cell.fit[0], x[i], y[i], z[i]);
     return;
   }
   evaluate_fit(cell, cell.fit[0], n, x, y, z, r);
-  if (cell.is_grey) {  // as most skies are
+  if (cell.is_grey) {  // most skies are grey
     std::copy_n(r, n, g);
     std::copy_n(r, n, b);
     return;

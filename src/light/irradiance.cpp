@@ -10,8 +10,8 @@ namespace troffer {
 
 namespace {
 
-// An edge's share of Lambert's sum: n·(v × w) / |v × w| times the angle between v and w. The cross
-// product is taken with the edge, so that it stays accurate where v and w are nearly parallel.
+// One edge's term of Lambert's sum: n·(v × w) / |v × w| times the angle between v and w. The cross
+// product uses the edge w - v, so that it stays accurate if v and w are nearly parallel.
 double edge_share(const Vec3d& v, const Vec3d& w, const Vec3d& n) {
   const Vec3d c = cross(v, w - v);
   const double sine = length(c);
@@ -19,8 +19,8 @@ double edge_share(const Vec3d& v, const Vec3d& w, const Vec3d& n) {
   return dot(n, c) / sine * upper_angle(sine, dot(v, w));
 }
 
-// Lambert's sum over vertex(0) … vertex(count - 1), relative to the receiver, clipped to the
-// horizon on the way: edges below it are dropped, and one edge along it closes the rest.
+// Lambert's sum over the vertices relative to the receiver, clipped at the horizon. Edges below the
+// horizon are dropped, and one edge along it closes the rest.
 template <class Vertex>
 double lambert_sum(size_t count, const Vertex& vertex, const Vec3d& n) {
   double sum = 0;
@@ -50,7 +50,7 @@ double lambert_sum(size_t count, const Vertex& vertex, const Vec3d& n) {
   return sum;
 }
 
-// Seen from the front the vertices run counterclockwise, which makes Lambert's sum negative.
+// From the front the vertices run counterclockwise, which makes Lambert's sum negative.
 double irradiance_from_sum(double sum, bool is_front) {
   return std::clamp(is_front ? -0.5 * sum : 0.5 * sum, 0.0, pi);
 }
@@ -92,10 +92,11 @@ double irradiance(const LightPrimitives& primitives, uint32_t light, const Vec3d
 
 namespace {
 
-// Gauss–Legendre of order 3 × 3 over a cell that is small against its distance and clear of the
-// horizon. corner: the cell's first corner from x; gu, gv: its sides; n0, nu, nv: these times the
-// normal, which cancel low over the horizon; area and height (of x over the cell's plane) likewise.
-// At 12 half diagonals the relative error is under 1e-6.
+// 3 × 3 Gauss–Legendre quadrature over a cell that is small relative to its distance and entirely
+// above the horizon. At a distance of 12 half diagonals, the relative error is below 1e-6.
+//   corner, gu, gv: the cell's first corner from x, and its sides;
+//   n0, nu, nv: their dot products with the normal, which cancel low over the horizon;
+//   area_and_height: the cell's area times the height of x over its plane.
 float quadrature_irradiance(const Vec3& corner, const Vec3& gu, const Vec3& gv, float n0, float nu,
                             float nv, float area_and_height) {
   constexpr float nodes[3] = {0.11270166538f, 0.5f, 0.88729833462f};
@@ -107,7 +108,7 @@ float quadrature_irradiance(const Vec3& corner, const Vec3& gu, const Vec3& gv, 
     const float a = nodes[i];
     for (int j = 0; j < 3; ++j) {
       const float b = nodes[j];
-      const float cosine = n0 + a * nu + b * nv;  // times the distance
+      const float cosine = n0 + a * nu + b * nv;  // cosine times distance
       const float square = q0 + a * (qu + a * uu + b * uv) + b * (qv + b * vv);
       sum += weights[i] * weights[j] * cosine / (square * square);
     }

@@ -1,4 +1,4 @@
-// Irradiance from spheres and disks (irradiance.h).
+// Irradiance of spheres and disks (irradiance.h).
 #include <cmath>
 
 #include "base/frame.h"
@@ -8,8 +8,9 @@
 
 namespace troffer {
 
-// Normals come rounded to single precision, and closed forms are differences of terms of which not
-// all have the normal's length: low over the horizon 1e-7 of it would be 1e-3 of the result.
+// Both functions normalize the normal, which is given in single precision. The closed forms are
+// differences of terms that scale differently with its length. Low over the horizon, an error of
+// 1e-7 would become 1e-3 of the result.
 
 double sphere_irradiance(const Vec3d& centre, double radius, const Vec3d& x, const Vec3d& normal,
                          Sides sides, bool is_inside_out) {
@@ -21,14 +22,15 @@ double sphere_irradiance(const Vec3d& centre, double radius, const Vec3d& x, con
   const Vec3d n = normalize(normal);
   const double cos_theta = dot(n, to_centre) / d;
   const double q = sqr(radius / d);
-  // METHOD: wholly above (or below) the horizon where cos² > q; in terms of x² = 1/q - 1
+  // Entirely above or below the horizon where cos² > q. The rest is in terms of x² = 1/q - 1.
   const double tangent2 = (d - radius) * (d + radius) / sqr(radius);
   if (sqr(cos_theta) >= q) return cos_theta > 0 ? pi * q * cos_theta : 0;
   const double sin_theta = length(cross(n, to_centre)) / d;
   const double tangent = std::sqrt(tangent2);
   const double y = std::clamp(-tangent * cos_theta / sin_theta, -1.0, 1.0);
   const double k = sin_theta * std::sqrt((1 - y) * (1 + y));
-  // atan(k / x) - q x k cancels for far spheres; with t = 1/x it is atan(k t) - k t / (1 + t²)
+  // atan(k / x) - q x k cancels for far spheres. With t = 1/x it is atan(k t) - k t / (1 + t²),
+  // which is expanded in t.
   double rest;
   const double t = 1 / tangent;
   if (t < 1e-2) {
@@ -42,12 +44,13 @@ double sphere_irradiance(const Vec3d& centre, double radius, const Vec3d& x, con
 
 namespace {
 
-// The rim seen from the receiver: r(phi) = (cos(phi) - rho) a + sin(phi) b - h m in radii, with a
-// towards the receiver's foot and m to its side. Then r × dr/dphi, dotted with the normal
-// (na, nb, nm), is nm + (h na - rho nm) cos(phi) + h nb sin(phi), and |r|² = A - B cos(phi).
+// The rim seen from the receiver: r(phi) = (cos(phi) - rho) a + sin(phi) b - h m in units of the
+// radius. Vector a points towards the receiver's foot, and m to the receiver's side. Then (r ×
+// dr/dphi) · (na, nb, nm) is nm + (h na - rho nm) cos(phi) + h nb sin(phi), and |r|² = A - B
+// cos(phi).
 struct Rim {
   double rho, h, na, nb, nm;
-  double s;         // sqrt(A² - B²), product of nearest and farthest distance
+  double s;         // sqrt(A² - B²): nearest times farthest distance
   double a_plus_s;  // A + s
 
   Rim(double rho_, double h_, double na_, double nb_, double nm_)
@@ -57,16 +60,16 @@ struct Rim {
     a_plus_s = rho * rho + h * h + 1 + s;
   }
 
-  // The whole rim: -1/2 the integral over the circle.
+  // Value for the whole rim: -1/2 times the integral over the circle.
   double whole() const {
     const double p = 1 + h * h - rho * rho;  // p² + 4 rho² h² = s²
     const double p_plus_s = p > 0 ? p + s : 4 * sqr(rho * h) / (s - p);
     return -pi / s * (nm * p_plus_s + 2 * rho * h * na) / a_plus_s;
   }
 
-  // The part between phi0 < phi1, phi1 - phi0 <= 2 pi, without the chord: the integral itself.
-  // With beta = B / (A + s), 1 / (A - B cos(phi)) = (1 + 2 sum beta^k cos(k phi)) / s, whose
-  // integral (phi + 2 w(phi)) / s, w = atan(beta sin(phi) / (1 - beta cos(phi))), has no branch.
+  // The integral from phi0 to phi1, phi1 - phi0 in (0, 2 pi], without the chord. With beta = B / (A
+  // + s), 1 / (A - B cos(phi)) = (1 + 2 sum beta^k cos(k phi)) / s. Its integral (phi + 2 w(phi)) /
+  // s, w = atan(beta sin(phi) / (1 - beta cos(phi))), has no branch cut.
   double arc(double phi0, double phi1) const {
     const double b = 2 * rho, a = rho * rho + h * h + 1, beta = b / a_plus_s;
     const double c0 = std::cos(phi0), c1 = std::cos(phi1);
@@ -96,15 +99,15 @@ double disk_irradiance(const Vec3d& centre, const Vec3d& m, double radius, const
   const Vec3d b = cross(up, a);
   const Rim rim(foot_length / radius, std::abs(signed_height) / radius, dot(n, a), dot(n, b),
                 dot(n, up));
-  // height of rim point phi over the horizon: swing cos(phi - towards) - middle
+  // Height of rim point phi over the horizon: swing cos(phi - towards) - middle.
   const double swing = std::hypot(rim.na, rim.nb), middle = rim.rho * rim.na + rim.h * rim.nm;
   if (middle >= swing) return 0;
   if (middle <= -swing) return std::clamp(rim.whole(), 0.0, pi);
   const double towards = std::atan2(rim.nb, rim.na);
   const double half = std::acos(middle / swing);
   const double phi0 = towards - half, phi1 = towards + half;
-  // The chord lies in the horizon's plane and adds the angle under which it is seen; it runs from
-  // phi1 back to phi0, clockwise seen from the zenith, as the visible part lies beyond it.
+  // The chord lies in the horizon's plane and adds the angle it subtends. It runs from phi1 back to
+  // phi0, clockwise seen from the zenith, because the visible part lies beyond it.
   const Vec3d r0{std::cos(phi0) - rim.rho, std::sin(phi0), -rim.h};
   const Vec3d r1{std::cos(phi1) - rim.rho, std::sin(phi1), -rim.h};
   const Vec3d turn = cross(r1, r0 - r1);

@@ -15,7 +15,8 @@ namespace troffer {
 
 namespace {
 
-// The one place that knows which file answers for a kind.
+// Calls `ask` with the struct that implements a kind. No other function depends on the list of
+// kinds.
 template <class Ask>
 decltype(auto) ask_kind(LightKind kind, const Ask& ask) {
   switch (kind) {
@@ -40,7 +41,7 @@ decltype(auto) ask_kind(LightKind kind, const Ask& ask) {
   return ask(SurfaceLight());
 }
 
-// A sun's disc is drawn from as without, for a portal's table is too coarse for it.
+// A sun's disc is too small for the portal's table, so the sun is sampled by its own method.
 bool is_drawn_through_portal(const Scene& scene, const LightPrimitive& p) {
   return p.portal != nullptr && scene.lights[p.light].kind != LightKind::sun;
 }
@@ -117,7 +118,8 @@ CertificateShape certificate_shape(const Scene& scene, const Light& light) {
   return ask_kind(light.kind, [&](auto kind) { return kind.certificate(scene, light); });
 }
 
-// Several cells to a texel, since the image is bilinear between them; what has none is smooth.
+// The table has several cells per texel, since the image is bilinear between texel centres. Skies
+// and uniform lights are smooth, so the least size does.
 std::unique_ptr<const Portal> make_portal(const Scene& scene, const Light& light,
                                           const LightPrimitive& p) {
   constexpr int least = 64, most = 1024;

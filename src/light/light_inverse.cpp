@@ -1,4 +1,4 @@
-// square_from_point: the inverses of light_sample.cpp, in double precision throughout.
+// square_from_point(): the inverses of light_sample.cpp, in double precision.
 #include <cmath>
 
 #include "base/frame.h"
@@ -24,7 +24,7 @@ Vec2d inverse_rectangle(const LightPrimitive& p, const PlanarView& view, const V
   return {along_x / double(p.size_x), along_y / double(p.size_y)};
 }
 
-// Barycentric coordinates of a point of the plane in fan triangle i.
+// Returns the barycentric coordinates of a point of the plane in fan triangle i.
 Barycentric<double> fan_barycentric(const LightPrimitive& p, uint32_t i, const Vec3d& from_vertex) {
   const Vec3d b(p.vertex(0));
   const Vec3d a = Vec3d(p.vertex(i + 1)) - b, c = Vec3d(p.vertex(i + 2)) - b;
@@ -38,7 +38,7 @@ Barycentric<double> fan_barycentric(const LightPrimitive& p, uint32_t i, const V
 Vec2d inverse_fan(const LightPrimitive& p, const PlanarView& view, const Vec3& x,
                   const Vec3d& from_vertex) {
   const uint32_t count = p.vertex_count - 2;
-  // the triangle whose angle at vertex 0 holds the point best
+  // Pick the triangle whose angle at vertex 0 contains the point best.
   uint32_t picked = 0;
   double best = -1e300;
   for (uint32_t i = 0; i < count; ++i) {

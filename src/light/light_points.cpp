@@ -11,7 +11,7 @@ namespace troffer {
 
 namespace {
 
-// Uniform in solid angle. Lengths in radii of the piece.
+// Points uniform in solid angle. Lengths in units of the piece's radius.
 TROFFER_MULTIVERSION
 void near_points(const SphericalRectangle<float>& rectangle, size_t n, const float* __restrict u,
                  const float* __restrict v, const Vec3& a, const Vec3& b, const Vec3& h,
@@ -25,7 +25,8 @@ void near_points(const SphericalRectangle<float>& rectangle, size_t n, const flo
   }
 }
 
-// Uniform in area: corner + u a + v b. height_area: of the receiver over the plane, times area.
+// Points uniform in area: corner + u a + v b. height_area: height of the receiver over the plane,
+// times the area.
 TROFFER_MULTIVERSION
 void far_points(size_t n, const float* __restrict u, const float* __restrict v, const Vec3& corner,
                 const Vec3& a, const Vec3& b, float height_area, float* __restrict x,
@@ -39,7 +40,7 @@ void far_points(size_t n, const float* __restrict u, const float* __restrict v, 
   }
 }
 
-// False where the rectangle is seen too small for single precision, and near.
+// Returns false for a near rectangle that is too small in solid angle for single precision.
 bool sample_rectangle_points(const LightPrimitive& p, const PlanarView& view, const Vec3& receiver,
                              size_t n, const float* u, const float* v, LightPoints& out) {
   const Vec3 normal(view.is_front ? p.normal : -p.normal);

@@ -14,7 +14,7 @@ namespace troffer {
 
 namespace {
 
-// Fills in all that follows from a planar polygon's vertices. False without area.
+// Sets all fields that follow from a planar polygon's vertices. Returns false if it has no area.
 bool set_polygon(LightPrimitive& p, std::span<const Vec3> vertices) {
   if (vertices.size() < 3) return false;
   const Vec3d vector = area_vector(vertices);
@@ -47,14 +47,15 @@ bool set_polygon(LightPrimitive& p, std::span<const Vec3> vertices) {
   return true;
 }
 
-// Mean emission over a triangle: one lookup at the centre of each of n² equal parts.
+// Returns the mean emission over a triangle from one lookup at the centre of each of n² equal
+// parts.
 Rgb mean_over_triangle(const Scene& scene, const Light& e, const Vec2 (&uv)[3], int n) {
   const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0];
   Rgb sum;
   int count = 0;
   for (int i = 0; i < n; ++i) {
     for (int j = 0; i + j < n; ++j) {
-      // upright part, and the part upside down beside it
+      // One upright part, and the inverted part beside it.
       for (int half = 0; half < (i + j + 1 < n ? 2 : 1); ++half) {
         const float offset = half == 0 ? 1.0f / 3 : 2.0f / 3;
         const float b1 = (float(i) + offset) / float(n), b2 = (float(j) + offset) / float(n);
@@ -66,8 +67,8 @@ Rgb mean_over_triangle(const Scene& scene, const Light& e, const Vec2 (&uv)[3], 
   return sum / float(count);
 }
 
-// About one lookup per texel, up to 16²; where those are all dark, up to 128², because a source
-// without power is never sampled.
+// Returns the mean emission from about one lookup per texel, up to 16². If all are dark, uses up to
+// 128², because a light without power would never be sampled.
 Rgb mean_over_triangle(const Scene& scene, const Light& e, const Vec2 (&uv)[3]) {
   const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0];
   const float uv_area = 0.5f * std::abs(a.x * b.y - a.y * b.x);
@@ -93,13 +94,13 @@ Rgb mean_over_triangle(const Scene& scene, const Light& e, const Vec2 (&uv)[3]) 
 
 }  // namespace
 
-// Of a piece that shines as a web says: the mean of a diffuse one of the same flux. All else is by
-// direction (surface_light.h).
+// Sets the mean radiance of a piece that emits by a photometric web: that of a diffuse piece with
+// the same flux. The dependence on direction is in surface_light.h.
 void LightPrimitives::set_web(const Scene& scene, const Light& e, LightPrimitive& p) {
   if (e.web == no_web) return;
   p.is_textured = true;
   const LightWeb& web = scene.webs[size_t(e.web)];
-  if (web.faces.empty()) {  // a sphere, whose surface is four times its cross-section
+  if (web.faces.empty()) {  // a sphere's area is four times its cross-section
     p.mean_radiance = e.radiance * float(flux(web) / (pi * 4 * double(web.cross_section)));
     return;
   }
@@ -164,7 +165,7 @@ void LightPrimitives::add_without_surface(const Scene& scene, uint32_t light,
   if (directions) directions_.push_back(std::move(directions));
   if (std::unique_ptr<const Portal> portal = make_portal(scene, e, p)) {
     p.portal = portal.get();
-    // What enters through it.
+    // Power that enters through the portal.
     p.power = p.tree_power = pi_f * float(portal->area()) * luminance(p.mean_radiance);
     portals_.push_back(std::move(portal));
   }
@@ -181,7 +182,7 @@ void LightPrimitives::add_polygon(const Scene& scene, uint32_t light) {
   if (!set_polygon(p, e.polygon)) return;
   if (e.polygon.size() > 4) {
     vertices_.push_back(e.polygon);
-    p.more_vertices = vertices_.back().data();  // stays where it is when vertices_ grows
+    p.more_vertices = vertices_.back().data();  // stays valid when vertices_ grows
   }
   set_web(scene, e, p);
   const int32_t index = append(p, e);

@@ -1,6 +1,6 @@
-// The scene's lights cut into simple pieces that can be chosen, sampled and hit: convex polygons,
-// triangles of mesh sources, disks, spheres; and one piece, which no ray hits, of each light
-// without surface.
+// The scene's lights, cut into simple pieces that can be chosen, sampled and hit: convex polygons,
+// triangles of mesh lights, disks and spheres. A light without surface is one piece, which no ray
+// hits. All direct light methods and light trees use these pieces.
 #pragma once
 
 #include <cstdint>
@@ -17,43 +17,44 @@
 
 namespace troffer {
 
-// Parallelograms without right angles and other polygons are `polygon`.
-// Without surface: `point` has a position, `infinite` has none.
+// Shape of a piece. Parallelograms without right angles count as polygons. Among pieces without
+// surface, `point` has a position and `infinite` has none.
 enum class PrimitiveShape : uint8_t { rectangle, triangle, polygon, disk, sphere, point, infinite };
 
 constexpr int32_t no_primitive = -1;
 
-// One piece of a light. Plain data; what is read by sampling comes first.
+// One piece of a light: plain data. The fields that sampling reads come first.
 struct LightPrimitive {
   PrimitiveShape shape = PrimitiveShape::triangle;
   bool is_two_sided = false;
-  bool is_inside_out = false;    // sphere: the front is inside
-  uint32_t vertex_count = 0;     // 0 for disk and sphere
-  float area = 0;                // m², one side
-  float radius = 0;              // disk, sphere; else the farthest vertex from the centroid, m
-  Vec3 centroid;                 // disk, sphere: the centre
-  Vec3 axis_x, axis_y;           // rectangle: unit, along its sides; disk: any in its plane
-  float size_x = 0, size_y = 0;  // rectangle: side lengths, m
-  Vec3d normal;                  // unit, on the front side; sphere: zero
-  Vec3 vertices[4];              // counterclockwise seen from the front, where vertex_count <= 4
-  const Vec3* more_vertices = nullptr;  // all of them, where vertex_count > 4; LightPrimitives owns
-  Vec2 uvs[3];                          // triangle: texture coordinates of the vertices
-  // infinite: by which directions are drawn, or none; LightPrimitives owns
+  bool is_inside_out = false;  // sphere whose front is the inside
+  uint32_t vertex_count = 0;   // 0 for disk and sphere
+  float area = 0;              // one side, m²
+  float radius = 0;            // of disk or sphere; else farthest vertex from the centroid; metres
+  Vec3 centroid;               // centre of a disk or sphere
+  Vec3 axis_x, axis_y;         // unit: along a rectangle's sides; orthogonal axes of a disk
+  float size_x = 0, size_y = 0;  // side lengths of a rectangle, metres
+  Vec3d normal;                  // unit, on the front side; zero for spheres
+  Vec3 vertices[4];              // counterclockwise seen from the front, if vertex_count <= 4
+  // all vertices if vertex_count > 4, owned by LightPrimitives
+  const Vec3* more_vertices = nullptr;
+  Vec2 uvs[3];  // triangle: texture coordinates of the vertices
+  // Table for sampling directions of an infinite piece, or null. Owned by LightPrimitives.
   const DirectionTable* directions = nullptr;
-  const Portal* portal = nullptr;  // … through which alone; so too
+  const Portal* portal = nullptr;  // null: none; owned by LightPrimitives
 
-  uint32_t light = 0;        // index into Scene::lights
-  int32_t triangle = -1;     // of a mesh source: index into that mesh's triangles
-  bool is_textured = false;  // radiance varies: a texture, holes of an alpha mask, or a web
-  Rgb mean_radiance;         // over the surface, W/(m² sr) or cd/m²
-  float power = 0;           // luminance of the flux that leaves: pi area L, twice if two-sided
-  // What light trees take for power: that of a light as strong in all its directions as this one is
-  // in its strongest.
+  uint32_t light = 0;        // index in Scene::lights
+  int32_t triangle = -1;     // of a mesh light: index in the mesh's triangles
+  bool is_textured = false;  // radiance varies by texture, alpha mask or web
+  Rgb mean_radiance;         // mean over the surface, W/(m² sr) or cd/m²
+  float power = 0;           // luminance of the emitted flux: pi area L, twice if two-sided
+  // Power used by light trees: the power of a light that emits in every direction as much as this
+  // one does in its strongest.
   float tree_power = 0;
-  Box bounds;  // world space; empty where infinite
-  // Cone of surface normals, for light trees: unit axis and cosine of its half angle (1: all equal;
-  // -1: all directions). From each normal, light leaves through the hemisphere around it (both
-  // hemispheres where is_two_sided). Of what is infinite: the directions that its light takes.
+  Box bounds;  // in world space; empty if infinite
+  // Cone of surface normals, for light trees: unit axis, and cosine of the half angle (1: one
+  // normal; -1: all directions). Light leaves through the hemisphere around each normal, or both
+  // hemispheres if two-sided. For infinite pieces: the directions in which light travels.
   Vec3 cone_axis{0, 0, 1};
   float cos_cone = -1;
 
@@ -66,14 +67,13 @@ struct LightPrimitive {
   }
 };
 
-// All pieces of a scene's lights, in the order of Scene::lights and within them in the order
-// of triangles, and the way back from what a ray hit. Surfaces without area and black lights are
-// left out.
+// All pieces of a scene's lights, and their lookup from what a ray hit. Order: that of
+// Scene::lights, then that of triangles. Black lights and surfaces without area are left out.
 class LightPrimitives {
  public:
   LightPrimitives() = default;
   explicit LightPrimitives(const Scene& scene);
-  // A primitive points into its owner's vertices: moving keeps them, copying would not.
+  // Not copyable, because pieces point into vertices_. Moving keeps those pointers valid.
   LightPrimitives(const LightPrimitives&) = delete;
   LightPrimitives& operator=(const LightPrimitives&) = delete;
   LightPrimitives(LightPrimitives&&) = default;
@@ -83,16 +83,16 @@ class LightPrimitives {
   size_t size() const { return primitives_.size(); }
   const LightPrimitive& operator[](size_t i) const { return primitives_[i]; }
 
-  // The pieces [first, last) of a light.
+  // Range [first, last) of a light's pieces.
   struct Range {
     uint32_t first = 0, last = 0;
   };
   Range of_light(uint32_t light) const { return ranges_[light]; }
 
-  // The pieces that are infinite, in increasing order.
+  // Indices of the infinite pieces, in increasing order.
   const std::vector<uint32_t>& at_infinity() const { return at_infinity_; }
 
-  // What was hit -> index of its piece, or no_primitive.
+  // Index of the piece that was hit, or no_primitive.
   int32_t of_triangle(uint32_t mesh, uint32_t triangle) const {
     const std::vector<int32_t>& t = triangle_table_[mesh];
     return t.empty() ? no_primitive : t[triangle];
@@ -110,14 +110,14 @@ class LightPrimitives {
   int32_t append(LightPrimitive p, const Light& e);
 
   std::vector<LightPrimitive> primitives_;
-  std::vector<std::vector<Vec3>> vertices_;  // of polygons with more than 4
+  std::vector<std::vector<Vec3>> vertices_;  // of polygons with more than 4 vertices
   std::vector<std::unique_ptr<const DirectionTable>> directions_;
   std::vector<std::unique_ptr<const Portal>> portals_;
   std::vector<Range> ranges_;  // per light
   std::vector<uint32_t> at_infinity_;
   std::vector<std::vector<int32_t>> triangle_table_;  // per mesh: empty, or per triangle
   std::vector<int32_t> disk_table_, sphere_table_;
-  std::vector<std::unique_ptr<const WebSamples>> web_samples_;  // per web, while pieces are made
+  std::vector<std::unique_ptr<const WebSamples>> web_samples_;  // per web; empty after construction
 };
 
 }  // namespace troffer

@@ -26,8 +26,9 @@ bool finish(const LightPrimitive& p, const PlanarView& view, const Vec3& to_poin
 
 // ---- rectangle ----
 
-// q: the point in radii of the piece, from the receiver's foot (so that no small height is lost in
-// a large lateral distance) and from vertex 0.
+// Finishes a rectangle sample. from_foot, from_corner: the point relative to the receiver's foot
+// and to vertex 0, in units of the piece's radius. Using the foot keeps a small height from being
+// lost in a large lateral distance.
 bool finish_rectangle(const LightPrimitive& p, const PlanarView& view, const Vec2& from_foot,
                       const Vec2& from_corner, LightSample& out) {
   const Vec2 local = from_corner * p.radius, lateral = from_foot * p.radius;
@@ -70,7 +71,8 @@ float pdf_rectangle(const LightPrimitive& p, const PlanarView& view, const Vec3&
 
 // ---- triangle, and polygon as a fan of triangles about vertex 0 ----
 
-// Picks fan triangle i in proportion to weight(i) >= 0 and stretches u over it. Returns the sum.
+// Picks fan triangle i in proportion to weight(i) >= 0, and rescales u to it. Returns the sum of
+// weights.
 template <class Weight>
 float pick_fan_triangle(const LightPrimitive& p, const Weight& weight, float& u, uint32_t& picked) {
   constexpr uint32_t kept = 16;
@@ -250,8 +252,8 @@ bool sample(const LightPrimitive& p, const Vec3& x, const Vec2& u, LightSample& 
 
 namespace {
 
-// The rectangles of a batch: one iteration each, several per vector register. (Only as parameters
-// are restricted pointers believed.)
+// Samples the near rectangles of a batch, vectorized over rectangles. The arrays are parameters
+// because compilers honour __restrict only there.
 TROFFER_MULTIVERSION
 void sample_rectangles(size_t n, const float* __restrict corner_x, const float* __restrict corner_y,
                        const float* __restrict size_x, const float* __restrict size_y,
@@ -278,7 +280,7 @@ void sample_many(const LightPrimitives& all, size_t n, const uint32_t* primitive
     a->resize(n);
   s.index.resize(n);
   size_t near = 0;
-  // Of a large mesh any piece may be next.
+  // Prefetch distance, because any piece of a large mesh may come next.
   constexpr size_t ahead = 8;
   for (size_t i = 0; i < n; ++i) {
     if (i + ahead < n) prefetch_object(all[primitives[i + ahead]]);

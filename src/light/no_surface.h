@@ -1,5 +1,5 @@
-// What kinds of light without a surface share: points are deltas in direction, and lights at
-// infinity have no position. A kind's file derives from this and says what differs.
+// Defaults shared by light kinds without a surface: points, and lights at infinity, which have no
+// position. Each kind's file derives from this and overrides what differs.
 // References: [1] Khronos, glTF extension KHR_lights_punctual ("Range Property").
 #pragma once
 
@@ -37,9 +37,9 @@ struct NoSurface {
     p.bounds.grow(position);
   }
 
-  // A point at e.position of radiant intensity `intensity` towards x. A positive range fades it as
-  // [1] has it, by 1 - (distance / range)^4. A negative one is a focal distance f = -range: light
-  // falls off by 1 / (distance + f)², as behind a reflector (Radiance's spotlight).
+  // Samples a point light at e.position with radiant intensity `intensity` towards x. A positive
+  // range fades it by 1 - (distance / range)^4 [1]. A negative range is a focal distance f =
+  // -range: light falls off by 1 / (distance + f)², as behind a reflector (Radiance's spotlight).
   static bool sample_point(const Light& e, const Vec3& x, Rgb intensity, LightSample& out) {
     const Vec3 to_point = e.position - x;
     const float d2 = length_squared(to_point);
@@ -56,7 +56,8 @@ struct NoSurface {
     return true;
   }
 
-  // A direction by the piece's table, still without radiance; false where there is none.
+  // Samples a direction by the piece's table; the radiance remains to be set. Returns false if the
+  // density is zero.
   static bool sample_table(const Light& e, const LightPrimitive& p, const Vec2& u,
                            LightSample& out) {
     float pdf = 0;
@@ -67,7 +68,7 @@ struct NoSurface {
     return true;
   }
 
-  // Light from infinity in the direction wi.
+  // Sets a sample of light from infinity in direction wi.
   static void sample_infinity(const Vec3& wi, Rgb radiance, float pdf, LightSample& out) {
     out = {};
     out.wi = wi;

@@ -1,5 +1,5 @@
-// A point that sends the same radiant intensity I in all directions, or one that a web, an image of
-// all directions or a picture that it throws says.
+// A point light: its radiant intensity is uniform, or given by a photometric web, an image of all
+// directions, or a projected image. One of the light kinds behind light.h.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct PointEmitter : NoSurface {
     p.power = total * luminance(e.radiance);
     p.tree_power = 4 * pi_f * largest_intensity(web) * luminance(e.radiance);
   }
-  // Irradiance I / r² on a surface that faces it.
+  // Samples the light's irradiance I / r² on a surface that faces it.
   static bool sample(const Scene& scene, const LightPrimitive& p, const Vec3& x, const Vec2& /*u*/,
                      LightSample& out) {
     const Light& e = scene.lights[p.light];
@@ -50,7 +50,8 @@ struct PointEmitter : NoSurface {
   }
 
  private:
-  // Of an image its mean; for light trees as strong as its brightest texel everywhere.
+  // Sets the bounds of a light with an image: mean radiance of the image, and for light trees the
+  // power at its brightest texel everywhere.
   static void bound_image(const Scene& scene, const Light& e, LightPrimitive& p) {
     constexpr float sphere = 4 * pi_f;
     float largest = 1;

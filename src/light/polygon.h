@@ -1,5 +1,5 @@
-// Planar convex polygons: area vector, centroid, which of them are parallelograms, and how near
-// their plane is in it.
+// Geometry of planar convex polygons: area vector, centroid, tests for parallelograms and
+// rectangles, and the rounding margin of their planes.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ inline Vec3d area_vector(std::span<const Vec3> polygon) {
   return sum * 0.5;
 }
 
-// Of the area. `normal` is the unit normal; falls back to the vertices' mean without area.
+// Centroid of the area; the mean of the vertices if there is no area. normal: unit normal.
 inline Vec3d centroid(std::span<const Vec3> polygon, const Vec3d& normal) {
   const Vec3d origin(polygon[0]);
   Vec3d sum, mean;
@@ -35,17 +35,17 @@ inline Vec3d centroid(std::span<const Vec3> polygon, const Vec3d& normal) {
   return mean / double(polygon.size());
 }
 
-// Up to so many metres over the plane of a flat source that contains y a receiver x counts as lying
-// in it, and gets no light: rounding puts hits on a source on either side of its plane, and the
-// back would see the front fill its sky. Rays begin and end farther from surfaces than that.
+// Height in metres over the plane of a flat source through y, up to which a receiver x counts as in
+// the plane and gets no light. Rounding can put a hit on the source's back onto its front side,
+// where the source would fill its hemisphere. Rays are offset farther from surfaces than this.
 inline double plane_rounding(const Vec3d& x, const Vec3d& y) {
   double sum = 0;
   for (const Vec3d& p : {x, y}) sum += std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   return 0x1p-21 * sum;
 }
 
-// Four vertices whose diagonals halve each other within rounding: up to 1e-5 of the diagonal, or
-// four units in the last place of the coordinates.
+// True for four vertices whose diagonals bisect each other, within 1e-5 of the diagonal or four
+// units in the last place of the coordinates.
 inline bool is_parallelogram(std::span<const Vec3> polygon) {
   if (polygon.size() != 4) return false;
   const Vec3d p0(polygon[0]), p1(polygon[1]), p2(polygon[2]), p3(polygon[3]);
@@ -56,7 +56,7 @@ inline bool is_parallelogram(std::span<const Vec3> polygon) {
   return length(p0 + p2 - p1 - p3) <= std::max(1e-5 * diagonal, 0x1p-22 * largest);
 }
 
-// A parallelogram with right angles (cosine up to 1e-5).
+// True for a parallelogram with right angles (cosine up to 1e-5).
 inline bool is_rectangle(std::span<const Vec3> polygon) {
   if (!is_parallelogram(polygon)) return false;
   const Vec3d u = Vec3d(polygon[1]) - Vec3d(polygon[0]);

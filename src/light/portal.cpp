@@ -10,10 +10,10 @@ namespace troffer {
 
 namespace {
 
-// Of the mean density, where nothing shines: light may lie between the directions looked at.
+// Lower bound of the density, relative to its mean. Light may lie between the directions evaluated.
 constexpr double least_density = 0.01;
 
-// The last i of [first, last] whose f(i) is not over `target`; f does not fall.
+// Returns the last i of [first, last] with f(i) <= target; f must not decrease.
 template <class F>
 int last_below(int first, int last, double target, const F& f) {
   while (first < last) {
@@ -26,7 +26,7 @@ int last_below(int first, int last, double target, const F& f) {
   return first;
 }
 
-// Steradians per area of the unit square of both angles, towards (x, y, 1).
+// Steradians per area of the unit square of both angles, in direction (x, y, 1).
 double steradians(double x, double y) {
   const double square = 1 + x * x + y * y;
   return sqr(pi) * (1 + x * x) * (1 + y * y) / (square * std::sqrt(square));
@@ -78,11 +78,11 @@ bool Portal::shows(const Vec3& x, const Vec3& wi) const {
   return a >= 0 && a <= size_x_ * w.z && b >= 0 && b <= size_y_ * w.z;
 }
 
-// Each of the conditions of shows() is affine in the place and linear in the direction: what holds
-// at all corners holds between them.
+// Each condition of shows() is affine in the place and linear in the direction. So what holds at
+// all corners holds between them.
 Portal::View Portal::view_within(double margin, const Box& receivers,
                                  const Parallelogram& far) const {
-  constexpr double angle = 1e-5;  // more than what far away means, and roundings (far_cells.h)
+  constexpr double angle = 1e-5;  // above rounding and the error of "far away" (far_cells.h)
   constexpr size_t conditions = 6;
   std::array<bool, conditions> always{}, never{};
   always.fill(true);
@@ -159,7 +159,8 @@ bool Portal::sample(const Vec3& x, const Vec2& u, Vec3& wi, float& pdf) const {
   if (!range_from(x, r)) return false;
   const double all = sum_to(r, r.x1);
   if (!(all > 0)) return false;
-  // The column, the place in it, and the same along it: linear within cells.
+  // Returns the position in [from, to] at which sum_before reaches the target; linear within cells.
+  // Used for the column and then along it.
   const auto invert = [&](double from, double to, double target, const auto& sum_before) {
     const int first = int(from);
     const int last = std::clamp(int(std::ceil(to)) - 1, first, n_ - 1);

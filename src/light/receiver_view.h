@@ -1,4 +1,5 @@
-// How a receiver stands to a piece of a light: what sampling, density and inverse share.
+// Geometry of a receiver and a piece of a light, shared by sampling, density and inverse
+// (light_sample.h).
 #pragma once
 
 #include <algorithm>
@@ -14,22 +15,23 @@
 
 namespace troffer {
 
-// See light_sample.h.
+// Distance, in radii of the piece, beyond which sampling is by area (light_sample.h).
 constexpr float far_in_radii = 32;
-// Below this the single-precision rectangle would place points with an error over 1e-4 of its size.
+// Solid angle below which single precision would misplace a point by over 1e-4 of the rectangle's
+// size.
 constexpr float least_single_precision_sr = 2e-3f;
-// Below this even double precision does not place points on a rectangle seen edge-on.
+// Solid angle below which double precision cannot place points either, on a rectangle seen edge-on.
 constexpr float least_rectangle_sr = 1e-8f;
 
-// The receiver against a planar piece.
-struct PlanarView {
-  double height;  // of the receiver over the plane, on the side it is on
+// A receiver relative to a planar piece.
+struct PlanarView {  // of the receiver over the plane, metres, >= 0
+  double height;     // of the receiver over the plane, on the side it is on
   bool is_front;
   bool is_visible;  // that side emits
   bool is_far;
 
   PlanarView(const LightPrimitive& p, const Vec3& x) {
-    // From float coordinates this difference is exact in double precision.
+    // Exact in double precision, because the coordinates are floats.
     const Vec3d y(p.vertex_count > 0 ? p.vertex(0) : p.centroid);
     const double signed_height = dot(p.normal, Vec3d(x) - y);
     is_front = signed_height > 0;
@@ -38,7 +40,7 @@ struct PlanarView {
     is_far = length_squared(x - p.centroid) > sqr(far_in_radii) * sqr(p.radius);
   }
   float pdf_from_area(const LightPrimitive& p, float distance) const {
-    // distance² / (cos area), cos = height / distance
+    // distance² / (cos area), with cos = height / distance.
     return float(double(distance) * double(distance) * double(distance) /
                  (height * double(p.area)));
   }
@@ -52,7 +54,7 @@ SphericalRectangle<T> rectangle_from(const LightPrimitive& p, const Vec3& x, dou
   return {x0, x0 + T(p.size_x) * scale, y0, y0 + T(p.size_y) * scale, T(height) * scale};
 }
 
-// Triangle (vertex 0, i+1, i+2) of the fan; vertex 0 is the B of SphericalTriangle.
+// Triangle (vertex 0, i+1, i+2) of the fan; vertex 0 is B of SphericalTriangle.
 template <class T>
 SphericalTriangle<T> fan_triangle(const LightPrimitive& p, const Vec3& x, double height,
                                   uint32_t i) {
@@ -71,12 +73,12 @@ inline float fan_area(const LightPrimitive& p, uint32_t i) {
          std::max(0.0f, dot(cross(p.vertex(i + 1) - b, p.vertex(i + 2) - b), Vec3(p.normal)));
 }
 
-// So close to the plane that float vertices relative to the receiver would blur the height.
+// True if the receiver is so close to the plane that single precision would blur its height.
 inline bool wants_double(const LightPrimitive& p, const PlanarView& view) {
   return view.height < 0.01 * double(p.radius);
 }
 
-// The disk in coordinates of SphericalDisk: a towards the receiver's foot, b across.
+// The disk in the coordinates of SphericalDisk: a towards the receiver's foot, b perpendicular.
 struct DiskView {
   Vec3d a, b, up;
   SphericalDisk disk;
@@ -92,14 +94,15 @@ struct DiskView {
   }
 };
 
-// How far off the sphere its own points may lie, metres: they are rounded to single precision.
+// Distance in metres by which points of the sphere may lie off it after rounding to float.
 inline double rounding_of_sphere(const Vec3d& centre, double radius) {
   const Vec3d c = abs(centre);
   return 4e-7 * (radius + std::max({c.x, c.y, c.z}));
 }
 
-// Lengths in radii of the sphere. Receivers on the surface itself count as inside even if rounding
-// put them out: the inside lights itself, the outside lights neither itself nor the inside.
+// A receiver relative to a sphere, in units of the radius. Receivers on the surface count as inside
+// even if rounding puts them outside. So the inside lights itself, and the outside lights neither
+// itself nor the inside.
 struct SphereView {
   Vec3d to_centre;  // in radii
   double distance;
@@ -112,7 +115,8 @@ struct SphereView {
     is_front = is_inside == p.is_inside_out;
     is_visible = is_front || p.is_two_sided;
   }
-  // Sampling gives the near end of a chord from outside, the far end from inside.
+  // True if sampling can return this hit: the near end of a chord from outside, the far end from
+  // inside.
   bool can_sample(const Vec3& wi, double hit_distance) const {
     return (hit_distance >= dot(Vec3d(wi), to_centre)) == is_inside;
   }

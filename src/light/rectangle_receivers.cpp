@@ -9,11 +9,11 @@ namespace troffer {
 
 namespace {
 
-// A rectangle in single precision; lengths in its radii but for the corner.
+// A rectangle in single precision. Lengths are in units of its radius, except the corner.
 struct FlatRectangle {
   Vec3 corner, axis_x, axis_y, normal;
   float size_x = 0, size_y = 0, per_radius = 0;
-  float back = 0;  // 1 where the back emits too, else 0
+  float back = 0;  // 1: the back emits too; else 0
 
   explicit FlatRectangle(const LightPrimitive& p)
       : corner(p.vertices[0]),
@@ -30,7 +30,7 @@ TROFFER_ALWAYS_INLINE float dot_of(float ax, float ay, float az, const Vec3& b) 
   return ax * b.x + ay * b.y + az * b.z;
 }
 
-// Choices as factors and minima, so that several receivers go together.
+// Branch-free, so that the loop over receivers vectorizes.
 TROFFER_ALWAYS_INLINE void point_for(const FlatRectangle& p, const Vec3& at, const Vec3& shading,
                                      const Vec3& normal, float u, float v, float& cosine,
                                      float& inverse_pdf) {
@@ -61,7 +61,7 @@ TROFFER_ALWAYS_INLINE void point_for(const FlatRectangle& p, const Vec3& at, con
   inverse_pdf = is_grazing | is_small ? -1 : lit;
 }
 
-// (Only as parameters are restricted pointers believed.)
+// The arrays are parameters because compilers honour __restrict only there.
 TROFFER_MULTIVERSION
 void points_for(const FlatRectangle& rectangle, size_t n, const float* __restrict x,
                 const float* __restrict y, const float* __restrict z, const float* __restrict sx,

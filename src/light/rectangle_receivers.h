@@ -1,5 +1,6 @@
-// One rectangle and many receivers: what one point of it would bring to each, several receivers to
-// a vector register. For choosing between lights; what arrives is for light_sample.h to say.
+// Light of one point of a rectangle at many receivers, vectorized over receivers. Resampled direct
+// light uses it to choose between lights (transport/resampled_direct.h). light_sample.h computes
+// the light that arrives.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +9,7 @@
 
 namespace troffer {
 
-// n surface points, as plain arrays: where they are, and their unit shading normals and geometric
-// normals.
+// n surface points as plain arrays: positions, unit shading normals, and unit geometric normals.
 struct SurfaceArrays {
   size_t n = 0;
   const float *x = nullptr, *y = nullptr, *z = nullptr;
@@ -17,10 +17,11 @@ struct SurfaceArrays {
   const float *normal_x = nullptr, *normal_y = nullptr, *normal_z = nullptr;
 };
 
-// For the point of rectangle p that sample() (light_sample.h) chooses for receiver i by (u[i],
-// v[i]), up to rounding: cosine[i], of its direction and the shading normal, 0 where the two
-// normals disagree on its side; inverse_pdf[i], sr, 0 where nothing of p faces the receiver, and -1
-// where single precision does not tell: on what p's plane nearly holds.
+// Evaluates, up to rounding, the point of rectangle p that sample() (light_sample.h) returns for
+// receiver i and (u[i], v[i]).
+//   cosine[i]: with the shading normal; 0 if the point is on opposite sides of the two normals
+//   inverse_pdf[i]: sr; 0 if p does not face the receiver; -1 if single precision cannot tell,
+//   which happens only near p's plane
 void points_of_rectangle(const LightPrimitive& p, const SurfaceArrays& receivers, const float* u,
                          const float* v, float* cosine, float* inverse_pdf);
 

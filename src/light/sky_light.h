@@ -1,12 +1,13 @@
-// A sky by formula, and the ground below it.
+// A sky given by formula, and the ground below it. One of the light kinds behind light.h.
 //
-// One formula covers the CIE general skies [1] and Perez' [2]: gradation from the zenith to the
-// horizon times an indicatrix about the sun. What k is tells them apart (daylight/sky_model.h).
+// One formula covers the CIE general skies [1] and Perez' all-weather skies [2]: a gradation from
+// zenith to horizon, times an indicatrix around the sun. They differ in the constant k
+// (daylight/sky_model.h).
+//
 // References: [1] CIE S 011/E:2003 (ISO 15469:2004), "Spatial distribution of daylight: CIE
-// standard
-//   general sky".
-//   [2] Perez, Seals & Michalsky, "All-weather model for sky luminance distribution", Solar Energy
-//   50(3), 1993, Eq. 1.
+//   standard general sky".
+//   [2] Perez, Seals & Michalsky, "All-weather model for sky luminance distribution", Solar
+//   Energy 50(3), 1993, Eq. 1.
 #pragma once
 
 #include <algorithm>
@@ -17,10 +18,11 @@
 
 namespace troffer {
 
-// Luminance at the cosines from zenith (> 0) and sun, relative; what falls below zero is dark.
+// Relative luminance by the cosines of the angles from the zenith (> 0) and from the sun. Negative
+// values become 0.
 template <class T>
 T relative_luminance(const SkyShape& s, T cos_zenith, T cos_sun) {
-  // Perez' b may be positive: his measurements end above the horizon.
+  // Perez' b may be positive, because his measurements end above the horizon.
   const T cosine = std::max(cos_zenith, T(0.01));
   const T gradation = 1 + T(s.a) * std::exp(T(s.b) / cosine);
   const T clamped = std::clamp(cos_sun, T(-1), T(1));
@@ -30,7 +32,7 @@ T relative_luminance(const SkyShape& s, T cos_zenith, T cos_sun) {
 }
 
 struct SkyLight : NoSurface {
-  // Directions by a lat-long table of what is seen.
+  // Returns a lat-long table of the sky's luminance.
   static std::unique_ptr<const DirectionTable> directions(const Scene& scene, const Light& e) {
     constexpr int height = 192, width = 2 * height;
     std::vector<float> luminances(size_t(width) * size_t(height));
@@ -44,7 +46,7 @@ struct SkyLight : NoSurface {
         at = luminance(radiance_at_infinity(scene, e, world));
         sum += double(at);
       }
-    // Between texels a sky may shine where it is dark in them.
+    // A floor, because a sky that is dark at all texel centres may still shine between them.
     const auto least = float(1e-3 * sum / (double(width) * double(height)));
     for (size_t i = 0; i < luminances.size() / 2; ++i)
       luminances[i] = std::max(luminances[i], least);

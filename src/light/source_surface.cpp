@@ -149,8 +149,8 @@ Vec2 SourceSurface::uv_at(const Vec3& point, int32_t triangle) const {
     const Vec2 uv = square_from_sphere(normalize(point - centre_));
     return {uv.y, uv.x};
   }
-  // The piece, among those of the triangle, from which the point strays least: outside of its
-  // edges or off its plane, both relative to its size.
+  // Find the piece of the triangle that the point is nearest to, by distance outside its edges or
+  // off its plane, relative to its size.
   Vec2 best;
   double least = std::numeric_limits<double>::infinity();
   for (const Piece& p : pieces_) {
@@ -195,7 +195,7 @@ Box SourceSurface::cell_bounds(const SourceCell& c) const {
       }
     }
   }
-  // Rounding of point_at: a few units in the last place of the coordinates.
+  // Allow for rounding in point_at(): a few units in the last place of the coordinates.
   const Vec3 magnitude = max(abs(box.lower), abs(box.upper)) + box.extent();
   box.lower = box.lower - magnitude * 1e-6f;
   box.upper = box.upper + magnitude * 1e-6f;
@@ -205,20 +205,20 @@ Box SourceSurface::cell_bounds(const SourceCell& c) const {
 Box SourceSurface::round_bounds(const SourceCell& c) const {
   Box box;
   if (shape_ == LightKind::disk) {
-    // The concentric map stretches by less than 1.5 (its derivative's Frobenius norm) from the
+    // The concentric map stretches by less than 1.5 (Frobenius norm of its derivative) from the
     // square [-1,1]², which is twice the unit square.
     const Vec3 middle = point_at({0.5f * (c.u0 + c.u1), 0.5f * (c.v0 + c.v1)}).point;
     const float reach = 1.5f * radius_ * std::hypot(c.u1 - c.u0, c.v1 - c.v0);
     for (size_t a = 0; a < 3; ++a) {
-      // half extents of a disk along axis a
+      // Half extents of a disk along axis a.
       const float flat = std::sqrt(std::max(0.0f, 1 - sqr(frame_.normal[a])));
       box.lower[a] = std::max(middle[a] - reach * flat, centre_[a] - radius_ * flat);
       box.upper[a] = std::min(middle[a] + reach * flat, centre_[a] + radius_ * flat);
     }
     return box;
   }
-  // Sphere: a belt between two heights and two azimuths; its extreme points are at its corners,
-  // where the belt crosses the equator, and where it crosses the x and y axes.
+  // A cell of the sphere lies between two heights and two azimuths. Its extreme points are at its
+  // corners, on the equator, and where it crosses the x and y axes.
   const float z0 = 1 - 2 * c.v1, z1 = 1 - 2 * c.v0;
   std::array<float, 3> heights{z0, z1, z0 <= 0 && z1 >= 0 ? 0.0f : z0};
   const auto grow = [&](float azimuth) {

@@ -1,4 +1,4 @@
-// Uniform sampling of the cone of directions to a sphere, from outside, with density and inverse.
+// Uniform sampling of the cone of directions to a sphere from outside, with density and inverse.
 // References: [1] Pharr, Jakob & Humphreys, "Physically Based Rendering", 4th ed., §6.2.4.
 #pragma once
 
@@ -9,8 +9,8 @@
 
 namespace troffer {
 
-// The sphere's centre lies on +z at `distance` > 1 from the receiver; lengths in radii of the
-// sphere.
+// The cone of a sphere whose centre lies on +z at `distance` > 1 from the receiver. Lengths are in
+// units of the sphere's radius.
 struct SphericalCap {
   double distance;
   double cos_max;        // cosine of the cone's half angle
@@ -25,10 +25,10 @@ struct SphericalCap {
 
   struct Hit {
     Vec3d wi;      // unit direction
-    double t = 0;  // distance
-    Vec3d normal;  // the sphere's outward unit normal there
+    double t = 0;  // distance to the hit
+    Vec3d normal;  // outward unit normal of the sphere at the hit
   };
-  // u in [0,1)² -> direction and its first hit.
+  // Returns a direction and its first hit for u in [0,1)².
   Hit sample(const Vec2d& u) const {
     const double drop = u.x * one_minus_cos;  // 1 - cos(theta)
     const double sin2 = drop * (2 - drop), cosine = 1 - drop;
@@ -36,12 +36,12 @@ struct SphericalCap {
     const double sine = std::sqrt(sin2), phi = 2 * pi * u.y;
     Hit hit;
     hit.wi = {sine * std::cos(phi), sine * std::sin(phi), cosine};
-    // both roots have the product distance² - 1
+    // The product of both roots is distance² - 1.
     hit.t = (distance - 1) * (distance + 1) / (distance * cosine + half_chord);
     hit.normal = normalize(hit.wi * hit.t - Vec3d{0, 0, distance});
     return hit;
   }
-  // Inverse of sample, from a direction of any length.
+  // Inverse of sample(), for a direction of any length.
   Vec2d square_from_direction(const Vec3d& w) const {
     const double r2 = w.x * w.x + w.y * w.y;
     const double norm = std::sqrt(w.z * w.z + r2);

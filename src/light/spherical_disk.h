@@ -23,28 +23,30 @@
 
 namespace troffer {
 
-// Coordinates on the disk's plane: `a` points from the centre to the receiver's foot, b = m × a,
-// m to the receiver's side. Lengths in radii of the disk.
+// A disk seen by a receiver, in units of its radius. Coordinates in the disk's plane: `a` points
+// from the centre to the receiver's foot; b = m × a, with the normal m on the receiver's side.
 struct SphericalDisk {
-  double rho = 0, height = 0;            // receiver at rho a + height m, height > 0
-  double sin_alpha2 = 0, sin_beta2 = 0;  // squared sines of half the opening along b, across b
-  double cot_alpha2 = 0, cot_beta2 = 0;  // squared cotangents
-  double axis_a = 0, axis_m = 0;         // the cone's axis, a unit vector (no part along b)
+  double rho = 0, height = 0;  // receiver at rho a + height m, height > 0
+  // squared sines of the half opening angles along and across b
+  double sin_alpha2 = 0, sin_beta2 = 0;
+  double cot_alpha2 = 0, cot_beta2 = 0;  // squared cotangents of the same angles
+  double axis_a = 0, axis_m = 0;         // unit vector of the cone's axis (its b component is 0)
 
-  // e: offset of the receiver's foot from the centre; both in radii.
+  // rho_: distance of the receiver's foot from the centre; both in radii.
   SphericalDisk(double rho_, double height_) : rho(rho_), height(height_) {
     const double rr = rho * rho, hh = height * height;
-    // s: product of the distances of the nearest and the farthest point of the rim
+    // s: nearest times farthest distance of the rim.
     const double q = rr + hh - 1;
     const double s = std::sqrt(q * q + 4 * hh);
-    const double plus = q > 0 ? s + q : 4 * hh / (s - q);   // s + q, s - q without cancellation:
-    const double minus = q > 0 ? 4 * hh / (s + q) : s - q;  // their product is 4 height²
-    const double sum = plus + 2;  // half the square of the sum of those two distances
+    const double plus = q > 0 ? s + q : 4 * hh / (s - q);  // s + q without cancellation
+    // s - q likewise; the product is 4 height²
+    const double minus = q > 0 ? 4 * hh / (s + q) : s - q;
+    const double sum = plus + 2;  // half the squared sum of those two distances
     sin_alpha2 = 2 / sum;
     cot_alpha2 = plus / 2;
     sin_beta2 = minus / (2 * s);
     cot_beta2 = plus / minus;
-    // The axis halves the angle between nearest and farthest rim point.
+    // The axis bisects the angle between the nearest and the farthest point of the rim.
     const double along = rho * plus / sum;
     const double scale = -1 / std::sqrt(along * along + hh);
     axis_a = along * scale;
@@ -54,7 +56,7 @@ struct SphericalDisk {
   double pdf_from_cos_max(double cos_max) const {
     return (1 + cos_max) / (2 * pi * std::sqrt(sin_alpha2 * sin_beta2));
   }
-  // cos(theta_max) in the direction whose part across the axis is (t, b).
+  // Returns cos(theta_max) for a direction whose component across the axis is (t, b).
   double cos_max(double t, double b) const {
     const double tt = t * t, bb = b * b;
     if (!(tt + bb > 0)) return std::sqrt(1 - sin_beta2);
@@ -62,8 +64,8 @@ struct SphericalDisk {
     return std::sqrt(outside / (outside + tt + bb));
   }
 
-  // u in [0,1)² -> (a, b) on the disk and the density per unit solid angle. The square is laid on
-  // the ellipse by the concentric map.
+  // Returns the point (a, b) of the disk for u in [0,1)², and its density per steradian. The
+  // concentric map carries the square to the ellipse.
   Vec2d sample(const Vec2d& u, double& pdf_solid_angle) const {
     const Vec2d d = disk_from_square(u);
     const double r2 = d.x * d.x + d.y * d.y;
@@ -74,7 +76,7 @@ struct SphericalDisk {
     const double drop = ee / (1 + cosine_max);  // 1 - cos(theta)
     const double sin_theta = std::sqrt(drop * (2 - drop));
     if (r2 > 0) e = e * (sin_theta / std::sqrt(ee));
-    // direction in (a, b, m): the axis and its perpendicular in the plane of symmetry
+    // Direction in (a, b, m): the axis, and its perpendicular in the plane of symmetry.
     const double w_a = (1 - drop) * axis_a - e.x * axis_m;
     const double w_m = (1 - drop) * axis_m + e.x * axis_a;
     const double t = w_m < 0 ? -height / w_m : 0;
@@ -84,7 +86,7 @@ struct SphericalDisk {
     return p;
   }
 
-  // Density per unit solid angle of sample at the point (a, b) of the disk.
+  // Density per steradian with which sample() returns the point (a, b) of the disk.
   double pdf_solid_angle(const Vec2d& p) const {
     const double wa = p.x - rho;
     return pdf_from_cos_max(cos_max(-wa * axis_m - height * axis_a, p.y));

@@ -1,7 +1,6 @@
-// Uniform sampling of the solid angle of a rectangle, with its inverse.
-// The map is that of [1]; here its trigonometry is done on sines and cosines (one atan2 and one
-// sine and cosine per sample), and the solid angle comes from [2], which stays accurate where the
-// sum of the corner angles cancels.
+// Uniform sampling of the solid angle of a rectangle, with its inverse. The map is that of [1],
+// computed with sines and cosines: one atan2 and one sine and cosine per sample. The solid angle is
+// computed as in [2], which stays accurate where the sum of the corner angles cancels.
 // References: [1] Ureña, Fajardo & King, "An Area-Preserving Parametrization for Spherical
 //   Rectangles", EGSR 2013.
 //   [2] Van Oosterom & Strackee, "The Solid Angle of a Plane Triangle", IEEE TBME 30(2), 1983.
@@ -18,7 +17,7 @@
 namespace troffer {
 
 // The rectangle [x0,x1] × [y0,y1] in the plane at height z > 0 over the receiver, which is the
-// origin. Any unit of length; near 1 keeps single precision from overflow.
+// origin. Any unit of length; sizes near 1 keep single precision from overflow.
 template <class T>
 struct SphericalRectangle {
   T x0, x1, y0, y1, z;
@@ -34,9 +33,8 @@ struct SphericalRectangle {
     solid_angle = part(x1, r10, r11);
   }
 
-  // Solid angle of [x0,x] × [y0,y1]; rx0, rx1 are the distances of (x,y0) and (x,y1). Two
-  // triangles, whose tangents of half the solid angle add like the arguments of complex numbers
-  // [2].
+  // Solid angle of [x0,x] × [y0,y1]. rx0, rx1: distances of (x,y0) and (x,y1). The half solid
+  // angles of two triangles are arguments of complex numbers [2], which are multiplied to add them.
   TROFFER_ALWAYS_INLINE T part(T x, T rx0, T rx1) const {
     const T yy0 = y0 * y0 + z * z, yy1 = y1 * y1 + z * z, yy01 = y0 * y1 + z * z;
     const T det = (x - x0) * (y1 - y0) * z;
@@ -46,9 +44,9 @@ struct SphericalRectangle {
     return 2 * upper_angle(std::max(det * (re1 + re2), T(0)), re1 * re2 - det * det);
   }
 
-  // u in [0,1)² -> (x, y) on the rectangle, density 1 / solid_angle per unit solid angle.
+  // Returns (x, y) on the rectangle for u in [0,1)², with density 1 / solid_angle per steradian.
   TROFFER_ALWAYS_INLINE Vec2T<T> sample(const Vec2T<T>& u) const {
-    // k = 2 pi minus the corner angles at x0 [1, Eq. 3], as (cos k, sin k)
+    // k is 2 pi minus the corner angles at x0 [1, Eq. 3], as (cos k, sin k).
     const T h0 = std::sqrt(y0 * y0 + z * z), h1 = std::sqrt(y1 * y1 + z * z);
     const T k_scale = 1 / ((x0 * x0 + z * z) * h0 * h1);
     const T cos_k = -(x0 * x0 * y0 * y1 + z * z * r00 * r01) * k_scale;
@@ -57,9 +55,9 @@ struct SphericalRectangle {
     T s, c;
     sine_cosine(part_angle, s, c);
     const T cos_au = c * cos_k - s * sin_k, sin_au = s * cos_k + c * sin_k;
-    // x from f_u = (cos(au) b0 - b1) / sin(au) [1, Eq. 4], x = z / sqrt(f_u² + b0² - 1), where
-    // b0² - 1 = -z² / h0². The rectangle's two long edges may change places: the longer of h0, h1
-    // loses less.
+    // x from f_u = (cos(au) b0 - b1) / sin(au) [1, Eq. 4]: x = z / sqrt(f_u² + b0² - 1), where b0²
+    // - 1 = -z² / h0². The roles of the two long edges may be exchanged; the longer of h0, h1 loses
+    // fewer digits.
     const T b0 = -y0 / h0, b1 = y1 / h1;
     const T first = T(h0 >= h1);  // 0 or 1
     const T h = std::max(h0, h1);
@@ -67,7 +65,7 @@ struct SphericalRectangle {
     const T root =
         std::sqrt(std::max(d * d - z * z * sin_au * sin_au, std::numeric_limits<T>::min()));
     const T x = std::min(std::max(z * sin_au * h * std::copysign(T(1), d) / root, x0), x1);
-    // y: its sine of elevation over the plane (x, z) is uniform [1, Eq. 8]
+    // y: the sine of its elevation over the plane (x, z) is uniform [1, Eq. 8].
     const T dd = x * x + z * z;
     const T s0 = y0 / std::sqrt(dd + y0 * y0), s1 = y1 / std::sqrt(dd + y1 * y1);
     const T sv = s0 + u.y * (s1 - s0);
@@ -75,7 +73,7 @@ struct SphericalRectangle {
     return {x, std::min(std::max(y, y0), y1)};
   }
 
-  // Inverse of sample. Use it in double precision.
+  // Inverse of sample(). Use it in double precision.
   Vec2T<T> square_from_point(const Vec2T<T>& p) const {
     const T dd = p.x * p.x + z * z;
     const T rx0 = std::sqrt(dd + y0 * y0), rx1 = std::sqrt(dd + y1 * y1);

@@ -1,4 +1,5 @@
-// A point that shines within a cone, fading between two angles from its axis.
+// A point light that shines within a cone and fades between two angles from its axis. One of the
+// light kinds behind light.h.
 // References: [1] Pharr, Jakob & Humphreys, "Physically Based Rendering", 4th ed., §12.2.1.
 //   [2] Khronos, glTF extension KHR_lights_punctual ("Inner and Outer Cone Angles").
 //   [3] W. Jakob et al., "Mitsuba 3 documentation: Emitters" (spot).
@@ -14,8 +15,8 @@
 namespace troffer {
 
 struct SpotLight : NoSurface {
-  // Radiant intensity in a direction at this cosine from the axis, as a share of the largest: a
-  // smooth step in the cosine [1], its square [2], or linear in the angle [3].
+  // Share of the largest radiant intensity in a direction with this cosine from the axis: a smooth
+  // step in the cosine [1], the square of a ramp in the cosine [2], or linear in the angle [3].
   static float share(const Light& e, float cosine) {
     if (cosine >= e.cos_inner) return 1;
     if (cosine <= e.cos_outer) return 0;
@@ -32,13 +33,13 @@ struct SpotLight : NoSurface {
     p.mean_radiance = e.radiance;
     p.power = effective_solid_angle(e) * luminance(e.radiance);
     p.tree_power = 4 * pi_f * luminance(e.radiance);
-    // Normals whose hemispheres hold the beam.
+    // A cone of normals whose hemispheres contain the beam.
     p.cone_axis = e.direction;
     p.cos_cone = e.cos_outer >= 0 ? 1 : std::sqrt(std::max(0.0f, 1 - sqr(e.cos_outer)));
   }
-  // Integral of share() over all directions, sr. Between the cosines the smooth step has half of
-  // the light, since it is symmetric, and the square a third. The linear one is integrated by
-  // parts: 1 - (sin outer - sin inner) / (outer - inner) for the whole cone, over 2 pi.
+  // Integral of share() over all directions, sr. Between the two cosines, the smooth step has a
+  // mean of 1/2, by symmetry, and the square 1/3. The linear falloff is integrated by parts: 1 -
+  // (sin outer - sin inner) / (outer - inner) for the whole cone, in units of 2 pi.
   static float effective_solid_angle(const Light& e) {
     if (e.falloff == SpotFalloff::linear) {
       const float outer = std::acos(e.cos_outer), inner = std::acos(e.cos_inner);

@@ -1,4 +1,4 @@
-// A disc of even radiance at infinity.
+// A disc of uniform radiance at infinity. One of the light kinds behind light.h.
 #pragma once
 
 #include "base/frame.h"
@@ -8,14 +8,14 @@
 namespace troffer {
 
 struct SunLight : NoSurface {
-  // 1 - cos of its radius, without cancellation.
+  // 1 - cos of the angular radius, without cancellation.
   static float drop(const Light& e) { return 2 * sqr(std::sin(e.angular_radius / 2)); }
   static float solid_angle(const Light& e) { return 2 * pi_f * drop(e); }
 
   static void bound(const Scene& /*scene*/, const Light& e, const Box& bounds, LightPrimitive& p) {
     p.shape = PrimitiveShape::infinite;
     p.mean_radiance = e.radiance;
-    // What enters a sphere around the scene.
+    // Power that enters a sphere around the scene.
     p.power = p.tree_power =
         pi_f * sqr(0.5f * bounds.diagonal()) * solid_angle(e) * luminance(e.radiance);
     p.cone_axis = e.direction;
@@ -39,7 +39,7 @@ struct SunLight : NoSurface {
   }
 
  private:
-  // |wi - axis|² = 2 (1 - cos); a little more, so that samples at the rim are seen within.
+  // |wi - axis|² = 2 (1 - cos). The margin keeps samples on the rim inside.
   static bool is_within(const Light& e, const Vec3& wi) {
     return length_squared(wi + e.direction) <= 2 * drop(e) * 1.0001f;
   }

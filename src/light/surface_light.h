@@ -1,5 +1,6 @@
-// Polygons, disks, spheres and meshes that emit diffusely, or as a web says whose opening they are
-// (Light::radiance is a factor on its own): their pieces are sampled by light_sample.h.
+// Lights with a surface: polygons, disks, spheres and meshes. They emit diffusely, or as the
+// opening of a photometric web, where Light::radiance is a factor. Their pieces are sampled by
+// light_sample.h; light.h uses this file for their kinds.
 #pragma once
 
 #include "light/light.h"
@@ -10,13 +11,14 @@ namespace troffer {
 struct SurfaceLight {
   static Rgb emitted(const Scene& scene, const Light& e, bool is_front, const TexturePlace& uv,
                      const Vec3& towards) {
-    if (e.web == no_web) return emitted_radiance(scene, e, is_front, uv);  // in all directions
+    // the same in all directions
+    if (e.web == no_web) return emitted_radiance(scene, e, is_front, uv);
     if (!is_front && !e.is_two_sided) return Rgb{0};
     const Vec3 w{dot(towards, e.axes[0]), dot(towards, e.axes[1]), dot(towards, e.axes[2])};
     return e.radiance * radiance(scene.webs[size_t(e.web)], w);
   }
 
-  // The radiance of a point that light_sample.h has chosen.
+  // Sets the radiance of a point that light_sample.h has sampled.
   static void finish(const Scene& scene, const LightPrimitive& p, LightSample& s) {
     s.is_delta = false;
     s.radiance = p.is_textured
@@ -39,7 +41,7 @@ struct SurfaceLight {
     return nullptr;
   }
   static void bound(const Scene&, const Light&, const Box&, LightPrimitive&) {
-  }  // has more than one piece
+  }  // not used: surface lights may have more than one piece
 
   static CertificateShape certificate(const Scene& scene, const Light& e) {
     if (e.kind != LightKind::sphere) return CertificateShape::flat;

@@ -11,9 +11,10 @@ namespace troffer {
 
 namespace {
 
-constexpr float least_area_share = 0.01f;  // of its largest face, of an opening seen edge on
+// lower bound of projected area, relative to the largest face
+constexpr float least_area_share = 0.01f;
 
-// i with angles[i] <= x <= angles[i + 1], and how far x is between them.
+// Returns i with angles[i] <= x <= angles[i + 1]. t: position of x between them.
 size_t step_of(const std::vector<float>& angles, float x, float& t) {
   const auto above = std::upper_bound(angles.begin() + 1, angles.end() - 1, x);
   const auto i = size_t(above - angles.begin()) - 1;
@@ -46,7 +47,7 @@ double flux(const LightWeb& web) {
   for (size_t j = 0; j + 1 < n; ++j) {
     const double a = double(web.heights_rad[j]), b = double(web.heights_rad[j + 1]);
     if (!(b > a)) continue;
-    // Of sin over [a, b], and of sin times what grows from 0 to 1 there.
+    // Integral of sin over [a, b], and of sin times a ramp from 0 to 1 over [a, b].
     const double all = std::cos(a) - std::cos(b);
     const double rising = (std::sin(b) - std::sin(a)) / (b - a) - std::cos(b);
     for (size_t i = 0; i + 1 < web.turns_rad.size(); ++i) {
@@ -76,7 +77,7 @@ float projected_area(const LightWeb& web, const Vec3& w) {
 
 namespace {
 
-// Angles of the directions in which light leaves the points for the receiver; turns from -pi.
+// Computes the angles at which light leaves the points for the receiver. Turns begin at -pi.
 TROFFER_MULTIVERSION
 void angles_of(const Vec3& first, const Vec3& second, const Vec3& pole, size_t n,
                const float* __restrict x, const float* __restrict y, const float* __restrict z,
@@ -91,7 +92,7 @@ void angles_of(const Vec3& first, const Vec3& second, const Vec3& pole, size_t n
   }
 }
 
-// Adds what of a face is seen.
+// Adds the visible projected area of a face.
 TROFFER_MULTIVERSION
 void add_seen(const Vec3& face, size_t n, const float* __restrict x, const float* __restrict y,
               const float* __restrict z, float* __restrict area) {
@@ -101,8 +102,8 @@ void add_seen(const Vec3& face, size_t n, const float* __restrict x, const float
   }
 }
 
-// Where the turns of a web begin before -pi's, they go on beyond pi. Directions that no angle of
-// the web goes with are told by height = -1.
+// Moves turns into the web's range, which may begin after -pi and continue beyond pi. Marks
+// directions outside the web by height = -1.
 TROFFER_MULTIVERSION
 void keep_within(const LightWeb& web, size_t n, float* __restrict height, float* __restrict turn) {
   constexpr float slack = 1e-5f;
@@ -115,7 +116,7 @@ void keep_within(const LightWeb& web, size_t n, float* __restrict height, float*
   }
 }
 
-// Linear between the four values about a direction; 0 where the height is negative.
+// Interpolates bilinearly between four values; 0 where the height is negative.
 TROFFER_MULTIVERSION
 void interpolate(const float* __restrict values, int32_t per_turn, float least_area, size_t n,
                  const int32_t* __restrict turn, const int32_t* __restrict height,
@@ -132,12 +133,12 @@ void interpolate(const float* __restrict values, int32_t per_turn, float least_a
 }
 
 TROFFER_ALWAYS_INLINE int32_t bucket_of(float angle, float first, float per_radian, float last) {
-  // no number is the first's: a comparison with it fails
+  // NaN maps to the first bucket, because comparisons with it are false.
   return int32_t(std::min(std::max(0.0f, (angle - first) * per_radian), last));
 }
 
-// The step that an angle lies in is one of so many behind that which its bucket begins in: beyond
-// the ends, the first or the last.
+// Finds the interval of an angle: start at the first interval of its bucket, then advance by at
+// most most_within. Angles beyond the ends get the first or last interval.
 struct Buckets {
   const float* angles;
   int32_t last_step, most_within;
@@ -164,8 +165,8 @@ void find_shares(const float* __restrict angles, size_t n, const float* __restri
 }  // namespace
 
 WebLookup::Steps::Steps(const std::vector<float>& a) : angles(a) {
-  // As narrow as the narrowest step, so that no bucket has two angles within, if they are not too
-  // many then.
+  // Buckets are as narrow as the narrowest interval, so that no bucket contains two angles, unless
+  // that makes too many buckets.
   constexpr float most_buckets = 4096;
   const float all = std::max(a.back() - a.front(), 1e-9f);
   float narrowest = all;
@@ -216,7 +217,7 @@ void WebLookup::radiance_many(const std::array<Vec3, 3>& axes, size_t n, const f
 
 WebSamples::WebSamples(const LightWeb& web) {
   const auto axes = axes_of(web.pole);
-  // Each cell of the web in parts of at most 3 degrees.
+  // Each cell of the web is divided into parts of at most 3 degrees.
   const auto most = float(rad_from_deg(3.0));
   const auto parts_of = [&](float from, float to) { return int((to - from) / most) + 1; };
   for (size_t j = 0; j + 1 < web.heights_rad.size(); ++j) {

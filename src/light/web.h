@@ -1,5 +1,5 @@
-// Measured distributions: intensity by direction, the flux they add up to, and the radiance of the
-// luminous opening that they leave.
+// Photometric webs: intensity by direction, total flux, and the radiance of the luminous opening
+// that emits it. Intensities in W/sr or cd, areas in m².
 #pragma once
 
 #include <array>
@@ -12,45 +12,47 @@
 
 namespace troffer {
 
-// Intensity in the unit direction w of the luminaire's own axes, linear in both angles.
+// Intensity in the unit direction w of the luminaire's axes, linear in both angles. 0 outside the
+// measured angles.
 float intensity(const LightWeb& web, const Vec3& w);
 
-// Integral of the intensity over all directions, exactly for what intensity() returns.
+// Integral of intensity() over all directions, exact for the interpolated values.
 double flux(const LightWeb& web);
 
 float largest_intensity(const LightWeb& web);
 
-// Of the opening's front faces as seen from w, m²: all of what is seen of a convex one. At least a
-// hundredth of its largest face, so that flat ones keep within bounds edge on.
+// Projected area, in m², of the opening's front faces seen from direction w; exact for convex
+// openings. At least a hundredth of the largest face, so that flat openings have finite radiance
+// edge-on.
 float projected_area(const LightWeb& web, const Vec3& w);
 
-// Radiance in the direction w of every point of the opening that is seen from there: far away these
-// add up to the intensity.
+// Radiance in direction w of every point of the opening that is visible from there. From far away
+// it adds up to the intensity.
 inline float radiance(const LightWeb& web, const Vec3& w) {
   return intensity(web, w) / projected_area(web, w);
 }
 
-// Memory for WebLookup.
+// Scratch memory of WebLookup.
 struct WebLanes {
   std::vector<float> height, turn, area;
   std::vector<int32_t> height_step, turn_step;
   std::vector<float> height_share, turn_share;
 };
 
-// A web with tables that find the steps of its angles without a search.
+// A web with lookup tables that find angle intervals without a search.
 class WebLookup {
  public:
-  explicit WebLookup(const LightWeb& web);  // which must stay where it is
+  explicit WebLookup(const LightWeb& web);  // `web` must outlive this object
 
-  // radiance() of n points of the opening at (x, y, z) from a receiver, which they are seen from;
-  // the luminaire's axes are these of the world. Several times faster, and in the last bits
-  // different.
+  // Computes radiance() for n visible points of the opening, given as vectors (x, y, z) from a
+  // receiver. axes: the luminaire's axes in world space. Several times faster than radiance(), with
+  // differences in the last bits.
   void radiance_many(const std::array<Vec3, 3>& axes, size_t n, const float* x, const float* y,
                      const float* z, WebLanes& lanes, float* out) const;
 
  private:
-  // Ascending angles, and buckets of equal width from the first to the last: of each, how many
-  // angles behind the first lie in buckets before it.
+  // Ascending angles, and buckets of equal width over their range. before[k]: number of angles
+  // after the first that lie in buckets before k.
   struct Steps {
     explicit Steps(const std::vector<float>& angles);
     void find(size_t n, const float* angles, int32_t* step, float* share) const;
@@ -58,7 +60,7 @@ class WebLookup {
     const std::vector<float>& angles;
     float buckets_per_radian = 0;
     std::vector<int32_t> before;
-    int32_t most_within = 0;  // of the inner angles, in one bucket
+    int32_t most_within = 0;  // largest number of inner angles in one bucket
   };
 
   const LightWeb& web_;
@@ -69,7 +71,7 @@ class WebLookup {
 class WebSamples {
  public:
   explicit WebSamples(const LightWeb& web);
-  // Flux per area of a face of the opening whose unit normal, in the luminaire's axes, is n.
+  // Flux per area of a face of the opening whose unit normal is n in the luminaire's axes.
   double exitance(const Vec3& n) const;
 
  private:

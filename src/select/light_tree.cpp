@@ -27,17 +27,17 @@ LightTree::LightTree(const LightPrimitives& primitives, LightPrimitives::Range r
 
 namespace {
 
-// One child of a node: a lane of LightTree::Node.
+// One child of a node: one lane of LightTree::Node.
 struct Child {
   float centre_x, centre_y, centre_z, radius_squared, axis_x, axis_y, axis_z, cos_spread,
       sin_spread, power, two_sided;
 };
 
-// Estimate of what a child's primitives send to a point, never 0 where they can send anything
-// [1, Eq. 3; 2]: power × cosine at the source × cosine at the point / distance², each cosine the
-// largest that bounds and cone allow. Angles are known by sine and cosine only: cos(max(0, a - b))
-// is 1 where cos a > cos b, else cos a cos b + sin a sin b. Without branches, so that several go
-// together. `sides` is 1 where light from behind (nx, ny, nz) counts as well, else 0.
+// Estimates the light that a child's primitives send to a point; 0 only if they can send none [1,
+// Eq. 3; 2]. It is power × cosine at the source × cosine at the point / distance², each cosine the
+// largest that bounds and cone allow. Angles enter by sine and cosine only: cos(max(0, a - b)) is 1
+// if cos a > cos b, else cos a cos b + sin a sin b. Branch-free, so that loops vectorize. sides: 1
+// if light from behind (nx, ny, nz) counts too, else 0.
 TROFFER_ALWAYS_INLINE float importance(const Child& c, float x, float y, float z, float nx,
                                        float ny, float nz, float sides) {
   constexpr float tiny = std::numeric_limits<float>::min();
@@ -46,7 +46,7 @@ TROFFER_ALWAYS_INLINE float importance(const Child& c, float x, float y, float z
   const float r2 = c.radius_squared;
   const float clear_d2 = std::max(std::max(d2, r2), tiny);
   const float scale = 1 / std::sqrt(std::max(d2, tiny));
-  // Angle under which the sphere around the bounds is seen.
+  // Angular radius of the sphere around the bounds.
   const float sin2_bounds = std::min(r2 / std::max(d2, tiny), 1.0f);
   const float cos_bounds = std::sqrt(1 - sin2_bounds), sin_bounds = std::sqrt(sin2_bounds);
 
@@ -64,13 +64,13 @@ TROFFER_ALWAYS_INLINE float importance(const Child& c, float x, float y, float z
   const float sin_x = std::sqrt(std::max(0.0f, 1 - cos_x * cos_x));
   const float cos_receiver = cos_x > cos_bounds ? 1 : cos_x * cos_bounds + sin_x * sin_bounds;
 
-  // Inside the sphere around the bounds nothing is known of directions.
+  // Inside the sphere around the bounds, the directions are unknown.
   const float cosines =
       d2 <= r2 * 1.0001f ? 1.0f : std::max(0.0f, cos_source) * std::max(0.0f, cos_receiver);
   return c.power * cosines / clear_d2;
 }
 
-// One child against n points at a stroke.
+// Importances of one child for n points.
 TROFFER_MULTIVERSION
 void importances_of_child(const Child& child, size_t n, const float* __restrict x,
                           const float* __restrict y, const float* __restrict z,
@@ -84,7 +84,7 @@ void importances_of_child(const Child& child, size_t n, const float* __restrict 
 
 }  // namespace
 
-// All children of a node against one point.
+// Importances of all children of a node for one point.
 void LightTree::importances(const Node& node, const Vec3& x, const Vec3& n, bool both_sides,
                             Lanes& out) {
   const float sides = both_sides ? 1.0f : 0.0f;
@@ -95,17 +95,17 @@ void LightTree::importances(const Node& node, const Vec3& x, const Vec3& n, bool
                         x.x, x.y, x.z, n.x, n.y, n.z, sides);
 }
 
-// Picks a child in proportion to `weight`, and updates probability and random number; width if none
-// has any.
+// Picks a child in proportion to `weight`, and updates pmf and u. Returns `width` if all weights
+// are 0.
 uint32_t LightTree::pick(const Lanes& weight, float& pmf, float& u) {
   const Lanes below{0, weight[0], weight[0] + weight[1], weight[0] + weight[1] + weight[2]};
   const float total = below[3] + weight[3];
   if (!(total > 0)) return width;
   const float target = u * total;
-  // Counted, not searched: which child it is cannot be predicted.
+  // Counts instead of branching, because the outcome is unpredictable.
   uint32_t k =
       uint32_t(target >= below[1]) + uint32_t(target >= below[2]) + uint32_t(target >= below[3]);
-  while (weight[k] == 0) --k;  // rounding may run past the last one that counts
+  while (weight[k] == 0) --k;  // rounding may run past the last child with a weight
   pmf *= weight[k] / total;
   u = std::clamp((target - below[k]) / weight[k], 0.0f, one_minus_epsilon);
   return k;
@@ -124,7 +124,7 @@ LightChoice LightTree::choose_below(uint32_t at, const Vec3& x, const Vec3& n, b
   }
 }
 
-// Of the tree and the lights beside it, 1 for each that may light the point.
+// Sum of the weights of the tree and the lights at infinity: 1 for each that may light the point.
 float LightTree::weight_sum(const Vec3& x, const Vec3& n, bool both_sides) const {
   float sum = 0;
   if (!nodes_.empty()) {
@@ -136,8 +136,8 @@ float LightTree::weight_sum(const Vec3& x, const Vec3& n, bool both_sides) const
   return sum;
 }
 
-// Picks a light at infinity; false where the tree's turn comes, or nothing's, with what is left of
-// the random number.
+// Picks a light at infinity. Returns false if the tree should choose, or nothing can; then `choice`
+// holds the remaining random number and the tree's probability.
 bool LightTree::choose_infinite(const Vec3& x, const Vec3& n, bool both_sides,
                                 LightChoice& choice) const {
   const float sum = weight_sum(x, n, both_sides);
@@ -161,7 +161,8 @@ LightChoice LightTree::choose(const Vec3& x, const Vec3& n, bool both_sides, flo
   return nodes_.empty() ? LightChoice{} : choose_below(0, x, n, both_sides, c.pmf, c.u);
 }
 
-// out: probability and number of each so far; children take runs of them, since numbers increase.
+// out[i] holds the probability and random number so far. Numbers increase, so each child takes a
+// contiguous run of them.
 void LightTree::choose_sorted_below(uint32_t at, const Vec3& x, const Vec3& n, bool both_sides,
                                     size_t count, LightChoice* out) const {
   const Node& node = nodes_[at];
@@ -204,7 +205,7 @@ void LightTree::choose_many(const LightReceivers& r, LightChoice* out,
       out[i] = choose(r.position(i), r.normal(i), r.sides[i] != 0, r.u[i]);
     return;
   }
-  // The root is everybody's: its children are weighed for all points together.
+  // All points visit the root, so its children are evaluated for all points together.
   const Node& root = nodes_[0];
   scratch.resize(n * width);
   for (uint32_t k = 0; k < width; ++k)

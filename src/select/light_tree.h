@@ -1,4 +1,6 @@
-// Chooses one light primitive for a point at random, about in proportion to what it can send there.
+// Random choice of one light primitive for a point, roughly in proportion to the light that it can
+// send there. Used by next-event estimation. The probability is never 0 for a primitive that can
+// light the point, so estimates are unbiased.
 // References: [1] Conty Estevez & Kulla, "Importance Sampling of Many Lights with Adaptive Tree
 //   Splitting", HPG 2018. [2] Pharr, Jakob & Humphreys, "Physically Based Rendering", 4th ed.,
 //   §12.6.3 (cones of directions around the bounds).
@@ -14,13 +16,14 @@
 
 namespace troffer {
 
+// A chosen primitive and its probability.
 struct LightChoice {
   uint32_t primitive = 0;
-  float pmf = 0;  // discrete probability; 0 = no light can reach the point
-  float u = 0;    // what is left of the random number, uniform in [0,1) again
+  float pmf = 0;  // discrete probability; 0: no light can reach the point
+  float u = 0;    // remainder of the random number, again uniform in [0,1)
 };
 
-// Many points at once, as plain arrays of one length.
+// Many points at once, as arrays of equal length.
 struct LightReceivers {
   std::vector<float> x, y, z, nx, ny, nz;  // point and unit normal
   std::vector<float> sides;                // 1: light from behind the normal counts too; else 0
@@ -44,56 +47,59 @@ struct LightReceivers {
   }
 };
 
-// A tree over light primitives that have a place, each node with the bounds, the power and a cone
-// that holds the normals of its primitives [1]; built binary, then collapsed to four children per
-// node, whose importances are computed at a stroke. Lights at infinity stand beside the tree: each
-// that may light the point is as probable as the whole tree. Never gives probability 0 to a
-// primitive that can light the point, so estimates by it are unbiased.
+// A tree over all light primitives that have a place. Each node has the bounds, the power and a
+// cone of the normals of its primitives [1]. It is built as a binary tree, then collapsed to four
+// children per node, whose importances are computed together.
+//
+// Lights at infinity stand outside the tree: each one that may light the point is as probable as
+// the whole tree. Immutable; any number of threads may call it.
 class LightTree {
  public:
   explicit LightTree(const LightPrimitives& primitives);
-  // Over a part of them only, such as one light's.
+  // Over a range of primitives only, such as those of one light.
   LightTree(const LightPrimitives& primitives, LightPrimitives::Range range);
 
   bool is_empty() const { return nodes_.empty() && infinite_.empty(); }
 
-  // For a point x on a surface of unit normal n; both_sides: light from behind n counts as well.
+  // Chooses a primitive for a point x on a surface with unit normal n. both_sides: light from
+  // behind n counts too. u: uniform in [0,1).
   LightChoice choose(const Vec3& x, const Vec3& n, bool both_sides, float u) const;
-  // choose() for every receiver, with the same results: out[i] for receiver i.
+  // Calls choose() for every receiver, with the same results: out[i] for receiver i.
   void choose_many(const LightReceivers& receivers, LightChoice* out,
                    std::vector<float>& scratch) const;
-  // choose() for one point and n numbers in increasing order, with the same results: out[i] for
-  // u[i]. A node is weighed once for all numbers that come by it.
+  // Calls choose() for one point and `count` numbers u in increasing order, with the same results.
+  // Evaluates each node only once.
   void choose_sorted(const Vec3& x, const Vec3& n, bool both_sides, const float* u, size_t count,
                      LightChoice* out) const;
-  // The probability with which choose() picks the primitive, which must be one of the tree's.
+  // Probability with which choose() picks `primitive`, which must be one of the tree's.
   float pmf(const Vec3& x, const Vec3& n, bool both_sides, uint32_t primitive) const;
 
-  // Those within `reach` of x, by the spheres around their bounds, but those at infinity; no more
-  // than `most` of them.
+  // Lists primitives whose bounding sphere is within `reach` metres of x, at most `most` of them;
+  // never lights at infinity.
   void near(const Vec3& x, float reach, size_t most, std::vector<uint32_t>& out) const;
 
  private:
   static constexpr uint32_t width = 4;
   using Lanes = std::array<float, width>;
-  // Four children side by side; unused ones have no power.
+  // Four children side by side; unused ones have zero power.
   struct alignas(16) Node {
     Lanes centre_x{}, centre_y{}, centre_z{};
     Lanes radius_squared{};              // of the sphere around the bounds
-    Lanes axis_x{}, axis_y{}, axis_z{};  // of the cone that holds all normals …
-    Lanes cos_spread{}, sin_spread{};    // … and its half angle
+    Lanes axis_x{}, axis_y{}, axis_z{};  // axis of the cone that contains all normals
+    Lanes cos_spread{}, sin_spread{};    // half angle of that cone
     Lanes power{};
-    Lanes two_sided{};                    // 1 where any primitive emits from both sides, else 0
-    std::array<uint32_t, width> child{};  // node, or primitive where is_leaf
+    Lanes two_sided{};                    // 1: some primitive emits from both sides; else 0
+    std::array<uint32_t, width> child{};  // index of a node, or of a primitive if is_leaf
     std::array<bool, width> is_leaf{};
-    uint32_t parent = 0, slot = 0;  // slot of this node in its parent; the root has neither
+    uint32_t parent = 0, slot = 0;  // position of this node in its parent; unused at the root
+    // Position of a primitive: a lane of a node.
   };
   struct Place {
     uint32_t node = no_node, slot = 0;
   };
   static constexpr uint32_t no_node = 0xffffffffu;
 
-  // A light at infinity, and the directions that its light takes.
+  // A light at infinity, and the cone of directions in which its light travels.
   struct Infinite {
     uint32_t primitive = 0;
     Vec3 axis;
@@ -119,8 +125,8 @@ class LightTree {
 
   std::vector<Node> nodes_;
   std::vector<Infinite> infinite_;
-  uint32_t first_ = 0;         // primitive of the first place
-  std::vector<Place> places_;  // of each primitive; beside the tree: no node, slot in infinite_
+  uint32_t first_ = 0;         // index of the first primitive
+  std::vector<Place> places_;  // by primitive; at infinity: no_node, and slot in infinite_
 };
 
 }  // namespace troffer

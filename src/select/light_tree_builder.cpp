@@ -11,19 +11,19 @@ namespace troffer {
 
 namespace {
 
-// A cone of directions; cos_spread 1 = the axis alone, -1 = all directions.
+// A cone of directions. cos_spread: 1 for the axis alone, -1 for all directions.
 struct Cone {
   Vec3 axis{0, 0, 1};
   float cos_spread = 1;
   bool is_empty = true;
 };
 
-// The smallest cone that holds both [2].
+// Returns the smallest cone that contains both [2].
 Cone merge(const Cone& a, const Cone& b) {
   if (a.is_empty) return b;
   if (b.is_empty) return a;
   const float cos_between = dot(a.axis, b.axis);
-  // A direction alone that lies within: what most members of a large set are.
+  // A single direction inside a cone is the usual case in a large set.
   if (b.cos_spread >= 1 && cos_between >= a.cos_spread) return a;
   const float spread_a = std::acos(std::clamp(a.cos_spread, -1.0f, 1.0f));
   const float spread_b = std::acos(std::clamp(b.cos_spread, -1.0f, 1.0f));
@@ -36,14 +36,14 @@ Cone merge(const Cone& a, const Cone& b) {
   const Vec3 turn = cross(a.axis, b.axis);
   const float turn_length = length(turn);
   if (!(turn_length > 1e-7f)) return between < 1 ? a : all;
-  // Turns a's axis towards b's by the angle at which the merged cone just holds a.
+  // Rotate a's axis towards b's until the merged cone just contains a.
   const float angle = spread - spread_a;
   const Vec3 k = turn / turn_length;
   const Vec3 axis = a.axis * std::cos(angle) + cross(k, a.axis) * std::sin(angle);
   return {normalize(axis), std::cos(spread), false};
 }
 
-// Measure of the directions that a cone of diffuse lights lights [1, Eq. 1, with 90 degrees].
+// Measure of the directions lit by a cone of diffuse lights [1, Eq. 1, with 90 degrees].
 float orientation_measure(const Cone& c) {
   const float spread = std::acos(std::clamp(c.cos_spread, -1.0f, 1.0f));
   const float reach = std::min(spread + pi_f / 2, pi_f);
@@ -59,8 +59,9 @@ float surface_measure(const Box& b) {
   return 2 * (e.x * e.y + e.y * e.z + e.z * e.x);
 }
 
+// Bins per axis when a split is searched.
 constexpr size_t split_bins = 12;
-// Below this depth of the binary tree halves keep it balanced.
+// Depth of the binary tree from which sets are split into equal halves, to bound the recursion.
 constexpr int balanced_depth = 32;
 
 }  // namespace
@@ -74,7 +75,7 @@ struct LightTreeBuilder::Item {
   bool is_two_sided;
 };
 
-// What a set of items amounts to.
+// Combined bounds, cone and power of a set of items.
 struct LightTreeBuilder::Summary {
   Box bounds, centres;
   Cone cone;
@@ -95,7 +96,7 @@ struct LightTreeBuilder::Summary {
     power += s.power;
     is_two_sided = is_two_sided || s.is_two_sided;
   }
-  // The surface area orientation heuristic [1, Eq. 2].
+  // Cost by the surface area orientation heuristic [1, Eq. 2].
   float cost() const {
     return power > 0 ? power * orientation_measure(cone) * surface_measure(bounds) : 0;
   }
@@ -139,8 +140,8 @@ uint32_t LightTreeBuilder::build_binary(size_t first, size_t last, int depth) {
   return index;
 }
 
-// Sorts items [first, last) into two parts and returns where the second begins: the best split of
-// the centres into bins along any axis, relative to the longest side [1, section 4.4].
+// Partitions items [first, last) and returns where the second part begins. Takes the best split of
+// the centres into bins along any axis, with costs relative to the longest side [1, section 4.4].
 size_t LightTreeBuilder::split(const Summary& all, size_t first, size_t last, int depth) {
   size_t best_axis = 3, best_bin = 0;
   float best_cost = std::numeric_limits<float>::infinity();
@@ -196,8 +197,8 @@ void LightTreeBuilder::set_lane(LightTree::Node& node, uint32_t slot, const Summ
   node.two_sided[slot] = s.is_two_sided ? 1.0f : 0.0f;
 }
 
-// Makes one wide node of a binary node and its nearest descendants: the strongest inner child is
-// replaced by its own children until all slots are taken.
+// Makes one wide node from a binary node and its descendants: replaces the strongest inner child by
+// its two children until all slots are taken.
 uint32_t LightTreeBuilder::collapse(uint32_t binary) {
   std::array<uint32_t, LightTree::width> children{binary};
   uint32_t count = 1;

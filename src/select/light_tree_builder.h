@@ -1,5 +1,5 @@
-// Building of LightTree: splits by the surface area orientation heuristic, cones of directions.
-// References: as in light_tree.h.
+// Builds a LightTree, which calls it in its constructor: splits by the surface area orientation
+// heuristic, and cones of directions. References: as in light_tree.h.
 #pragma once
 
 #include "select/light_tree.h"

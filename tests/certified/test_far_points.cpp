@@ -1,4 +1,4 @@
-// Points of skies that rays are cast to: even, and in proportion to what they would send.
+// FarPoints: sampled points of skies and images are unbiased, and proportional to their light.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -30,7 +30,7 @@ Scene under(Kind kind) {
     map.height = map.width / 2;
     for (int i = 0; i < map.width * map.height; ++i)
       map.texels.push_back(Rgb{1 + std::sin(0.1f * float(i % map.width))});
-    // A sun of 4 degrees, and no ground.
+    // A sun of 4 degrees over a uniform image without ground.
     for (int i = 0; is_sunny && i < map.width * map.height; ++i) {
       const double altitude = 90 - 180 * (i / map.width + 0.5) / map.height;
       const double azimuth = 360 * (i % map.width + 0.5) / map.width - 180;
@@ -77,8 +77,7 @@ struct Points {
   }
 };
 
-// Luminance that arrives at a horizontal or tilted surface, by so many even points of the upper
-// hemisphere of its normal.
+// Unoccluded irradiance of a surface, by cosine-distributed points of the hemisphere in `frame`.
 double expected(const Points& p, const Frame& frame) {
   constexpr int n = 600;
   double sum = 0;
@@ -91,7 +90,7 @@ double expected(const Points& p, const Frame& frame) {
   return sum * pi / (double(n) * n);
 }
 
-// Mean and root mean square error of runs of so many even points, relative to the whole.
+// Mean and root mean square error of several runs of n samples, relative to the expected value.
 struct Estimates {
   double mean = 0, error = 0;
 };
@@ -139,16 +138,16 @@ TEST_CASE("sixty-four points of a sky say what arrives where nothing hides it") 
   }
 }
 
-// Chances that were made for normals about a receiver's serve it as well: nothing that it sees is
-// without chance, and a few points err by little more.
+// Precomputed chances must serve every normal in their neighbourhood: no visible part has zero
+// chance, and the error hardly grows.
 TEST_CASE("chances for normals about a receiver's leave none of its light out") {
   for (const Kind kind : {Kind::overcast, Kind::clear, Kind::image}) {
     const Points p(kind);
     Random random(7 + uint64_t(kind));
     for (int k = 0; k < 12; ++k) {
       Vec3 normal = sphere_from_square(random.next_vec2());
-      if (k < 3) normal = {0, 0, k == 0 ? -1.0f : 1.0f};  // a face's middle
-      if (k == 2) normal = normalize(Vec3{1, 1, 1});      // … and corner
+      if (k < 3) normal = {0, 0, k == 0 ? -1.0f : 1.0f};  // centre of a cube face
+      if (k == 2) normal = normalize(Vec3{1, 1, 1});      // corner of a cube face
       ShadowReceiver r{};
       r.normal = r.horizon = normal;
       FarPoints::Chances own;
@@ -170,8 +169,8 @@ TEST_CASE("chances for normals about a receiver's leave none of its light out") 
   }
 }
 
-// A part that is dim but for a few texels must not be drawn by what it is elsewhere: parts are cut
-// until they are even. In the open a few points then err by little, sun or not.
+// A dim part with a few bright texels must not be sampled by its typical luminance. Parts are cut
+// until they are even, so samples have similar values with or without a sun.
 TEST_CASE("no point of an image with a small sun counts for much more than all light") {
   const Points p(Kind::sunny);
   Random random(11);

@@ -1,4 +1,4 @@
-// Which of the two lights what.
+// StagedDirect: which of its two DirectLights computes what.
 #include "certified/staged_direct.h"
 
 #include <doctest/doctest.h>
@@ -7,7 +7,7 @@ using namespace troffer;
 
 namespace {
 
-// Adds `value` to what it is asked about, and weighs with it.
+// A DirectLight that adds `value` for every hit and returns it as weight.
 class Marking final : public DirectLight {
  public:
   explicit Marking(float value) : value_(value) {}

@@ -1,5 +1,5 @@
-// Scenes of one source each, tilted and moved away from the origin, and points in the source's own
-// coordinates.
+// Test scenes with one light each, tilted and moved away from the origin. Pose converts points to
+// and from the light's own coordinates.
 #pragma once
 
 #include <string>
@@ -13,13 +13,13 @@
 
 namespace troffer::test {
 
-// Rounds to single precision. Not inlined: GCC 12's vectorizer drops the rounding where a vector
-// goes to float and straight back to double.
+// Rounds to single precision. Not inlined, because GCC 12's vectorizer drops the rounding in a
+// conversion to float and straight back to double.
 [[gnu::noinline]] inline Vec3 rounded(const Vec3d& v) {
   return Vec3(v);
 }
 
-// World = place + x t + y b + z n; sources lie in z = 0 with their front towards +z.
+// World = place + x t + y b + z n. Lights lie in z = 0 with their front towards +z.
 struct Pose {
   Framed frame{normalize(Vec3d{0.3, -0.7, 0.4})};
   Vec3d place{1.5, -0.75, 2.25};
@@ -95,7 +95,7 @@ struct NamedScene {
   Scene scene;
 };
 
-// Flat sources about one unit wide, around (0.5, 0.5) but for the disk, which is around (0,0).
+// Flat lights about one unit wide. The disk is centred on (0,0), the others on about (0.5, 0.5).
 inline std::vector<NamedScene> flat_scenes(bool is_two_sided = false) {
   std::vector<NamedScene> all;
   const auto add = [&](const char* name, Scene s) {

@@ -1,5 +1,5 @@
-// Images of environments, skies, suns and webs: samples against densities, radiance and closed
-// forms.
+// Environment images, skies, suns and webs: samples are tested against densities, radiance and
+// closed forms.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -49,7 +49,7 @@ Scene with_map(const EnvironmentMap& map) {
   s.environments.push_back(map);
   Light& e = add_light(s, LightKind::environment, Rgb{2});
   e.environment = 0;
-  e.axes = {Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{-1, 0, 0}};  // mirrors
+  e.axes = {Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{-1, 0, 0}};  // a reflection
   return s;
 }
 
@@ -78,12 +78,12 @@ TEST_CASE("directions of an image are drawn as their density says, and can be in
       REQUIRE(pdf > 0);
       ++observed[bin_of(w)];
       if (i > 2000) continue;
-      // Close by, or the other side of a cell's edge.
+      // The neighbourhood may lie across a cell's edge.
       CHECK(double(table.pdf(w)) == doctest::Approx(double(pdf)).epsilon(0.02));
       float again = 0;
       CHECK(length(table.sample(table.square_of(w), again) - w) < 0.02f);
     }
-    // Midpoints in the angle from z, since densities of rows near a pole rise towards it.
+    // Uses midpoints in the angle from z, because densities in rows near a pole rise towards it.
     for (size_t z = 0; z < nz; ++z)
       for (size_t a = 0; a < na; ++a)
         for (int i = 0; i < fine * fine; ++i) {
@@ -141,7 +141,7 @@ TEST_CASE("an image's light is what rays by chance see, weighed by the same dens
                 (4 * pi_f / (600 * 600));
     CAPTURE(c.width);
     CHECK(double(luminance(drawn)) == doctest::Approx(double(luminance(seen))).epsilon(0.02));
-    // The flux into the scene's sphere.
+    // Flux into the scene's sphere.
     const double r = 0.5 * double(bounds(s).diagonal());
     CHECK(double(lights[0].power) ==
           doctest::Approx(pi * r * r * double(luminance(seen))).epsilon(0.02));
@@ -182,7 +182,7 @@ TEST_CASE("a sky's and a sun's samples: density, radiance, irradiance") {
     sky_drawn += double(at.radiance.g / at.pdf_solid_angle) / n;
     const Vec3 w = sphere_from_square(random.next_vec2());
     sky_seen += double(radiance_at_infinity(s, lights[0], {}, w).g) * 4 * pi / n;
-    // What is seen can be drawn.
+    // Every visible direction can be sampled.
     if (radiance_at_infinity(s, lights[0], {}, w).g > 0)
       CHECK(pdf_solid_angle(s, lights[0], {}, w, infinity) > 0);
 
@@ -240,7 +240,7 @@ TEST_CASE("a range fades a point, and glTF's spots fade by a square") {
   REQUIRE(sample(s, lights[0], {2, 0, 0}, {}, at));
   CHECK(double(at.radiance.r) == doctest::Approx(2 * (1 - 1 / 16.0)));
   CHECK_FALSE(sample(s, lights[0], {4, 0, 0}, {}, at));
-  // A negative range is a focal distance of 1 here: 8 / (3 + 1)².
+  // A negative range is a focal distance, here 1: 8 / (3 + 1)².
   Scene focused;
   add_point(focused, {0, 0, 0}, Rgb{8});
   focused.lights[0].range = -1;

@@ -1,4 +1,4 @@
-// Cells of lights at infinity: they cover all directions once, and have the light's radiance.
+// Sky patches cover each direction once and have the light's radiance.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ Scene unit_floor() {
   return s;
 }
 
-// A light turned away from the world's axes, that of a clear sky or so.
+// A light like a clear sky, turned away from the world's axes.
 Light clear_sky(const Vec3& zenith) {
   Light e;
   e.kind = LightKind::sky;
@@ -36,11 +36,11 @@ Light clear_sky(const Vec3& zenith) {
 
 struct Seen {
   size_t none = 0, many = 0;
-  double error = 0, sum = 0;  // root mean square of the radiance's, and its mean
-  double difference = 0;      // of the means
+  double error = 0, sum = 0;  // root mean square error of the radiance, and mean radiance
+  double difference = 0;      // between the means
 };
 
-// Over directions all round.
+// Compares patches and light over directions all around.
 Seen look_round(const Scene& scene, const LightPrimitives& primitives, const FarCells& cells) {
   Seen seen;
   constexpr int n = 20000;
@@ -81,8 +81,8 @@ TEST_CASE("far cells of a sky: every direction lies in one, of the sky's radianc
     const Seen seen = look_round(scene, primitives, cells);
     CAPTURE(cells.all().size());
     CHECK(seen.none == 0);
-    CHECK(seen.many <= 2);  // on an edge
-    // tables have steps, about the sun
+    CHECK(seen.many <= 2);  // directions on an edge
+    // Tables are piecewise constant around the sun.
     CHECK(seen.error < 0.015 * seen.sum);
     CHECK(std::abs(seen.difference) < 3e-4 * seen.sum);
     CHECK(cells.all().size() < 120);
@@ -113,7 +113,7 @@ TEST_CASE("far cells of an image are cut where its energy is, and send all of it
   const FarCells cells(scene, primitives);
   double steradians = 0, integral = 0, brightest = 0, smallest = 10;
   for (const FarCell& cell : cells.all()) {
-    // by the midpoints of a grid: h dA / r³
+    // Integrates h dA / r³ by the midpoints of a grid.
     constexpr int n = 64;
     double own = 0, light = 0;
     for (int k = 0; k < n * n; ++k) {

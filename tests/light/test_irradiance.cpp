@@ -1,4 +1,4 @@
-// Closed-form irradiance against configuration factors of the literature and against quadrature,
+// Closed-form irradiance against configuration factors from the literature and against quadrature:
 // from 1e-4 to 1e3 source sizes away, with receivers tilted through 180 degrees.
 // References: [1] Howell, Mengüç, Daun & Siegel, "Thermal Radiation Heat Transfer", 7th ed.,
 //   appendix C: catalogue of configuration factors, B-3, B-4, B-13, B-15.
@@ -17,11 +17,11 @@ namespace {
 
 const std::vector<double> distances{1e-4, 1e-3, 1e-2, 0.1, 0.5, 1, 3, 10, 100, 1e3};
 
-std::vector<Vec3d> rectangle(double a, double b, double z) {  // its front looks down
+std::vector<Vec3d> rectangle(double a, double b, double z) {  // its front faces down
   return {{0, 0, z}, {0, b, z}, {a, b, z}, {a, 0, z}};
 }
 
-// Breaks [lo, hi] at `focus` and at geometric distances from it, and integrates each part.
+// Integrates f over [lo, hi], split at `focus` and at geometric distances from it.
 template <class F>
 double integrate_around(const F& f, double lo, double hi, double focus, double scale, int n) {
   std::vector<double> breaks{lo, hi};
@@ -36,8 +36,9 @@ double integrate_around(const F& f, double lo, double hi, double focus, double s
   return sum;
 }
 
-// Reference by brute force: a flat source in z = 0, front up, between the curves left(y) and
-// right(y), y = ordinate(t), t in [t0,t1]. Slices along x, each cut at the horizon exactly.
+// Reference by quadrature: a flat source in z = 0, front up, between the curves left(y) and
+// right(y), y = ordinate(t), t in [t0,t1]. Integrates slices along x, each cut exactly at the
+// horizon.
 template <class Left, class Right, class Ordinate, class Slope>
 double flat_reference(const Left& left, const Right& right, const Ordinate& ordinate,
                       const Slope& slope, double t0, double t1, double t_focus,
@@ -58,7 +59,7 @@ double flat_reference(const Left& left, const Right& right, const Ordinate& ordi
     };
     return integrate_around(f, lo, hi, x.x, away, 12) * slope(t);
   };
-  // Outer breaks: the focus, and where the horizon meets the outline.
+  // Outer breaks: the focus, and the crossings of horizon and outline.
   std::vector<double> breaks{t0, t1};
   for (const double b : extra)
     if (b > t0 && b < t1) breaks.push_back(b);
@@ -78,7 +79,7 @@ double rectangle_reference(double a, double b, const Vec3d& x, const Vec3d& n) {
                         n);
 }
 
-// t is the polar angle from -y to y, so that the slices' ends are smooth.
+// t is the polar angle from -y to y, so that the slices' ends vary smoothly.
 double disk_reference(double radius, const Vec3d& x, const Vec3d& n) {
   std::vector<double> kinks;  // where the horizon crosses the rim
   const double middle = dot(n, x), swing = radius * std::hypot(n.x, n.y);
@@ -95,8 +96,8 @@ double disk_reference(double radius, const Vec3d& x, const Vec3d& n) {
       [&](double t) { return radius * std::cos(t); }, -pi / 2, pi / 2, focus, kinks, x, n);
 }
 
-// Directions in the cone around the sphere's centre, one ring after the other; the part of a ring
-// above the horizon in closed form.
+// Integrates rings of directions around the sphere's centre. The part of a ring above the horizon
+// has a closed form.
 double sphere_reference(double radius, double d, double theta_n) {
   const double theta_max = std::asin(radius / d);
   const auto ring = [&](double theta) {
@@ -111,14 +112,15 @@ double sphere_reference(double radius, double d, double theta_n) {
     return value * std::sin(theta);
   };
   const double kink = std::abs(pi / 2 - theta_n);
-  // sqrt-like behaviour at the kink: adaptive from there
+  // Adaptive, because the integrand behaves like a square root at the kink.
   if (kink > 0 && kink < theta_max)
     return integrate_adaptive(ring, 0.0, kink, 1e-13 * theta_max * theta_max, 10, 40) +
            integrate_adaptive(ring, kink, theta_max, 1e-13 * theta_max * theta_max, 10, 40);
   return integrate_adaptive(ring, 0.0, theta_max, 1e-13 * theta_max * theta_max, 10, 40);
 }
 
-// Normals through 180 degrees of tilt in three azimuths, from facing the source (down) to away.
+// Normals tilted through 180 degrees in several azimuths, from facing the source (down) to facing
+// away.
 std::vector<Vec3d> tilted_normals() {
   std::vector<Vec3d> all;
   for (const double azimuth : {0.0, 0.9, 2.5, 4.0})
@@ -130,8 +132,8 @@ std::vector<Vec3d> tilted_normals() {
   return all;
 }
 
-// |value - exact| <= 1e-6 exact + floor; floor covers slivers over the horizon, where the reference
-// itself is the difference of larger numbers.
+// Checks |value - exact| <= 1e-6 exact + floor. The floor covers slivers above the horizon, where
+// the reference itself suffers cancellation.
 void check_close(double value, double exact, double floor) {
   CHECK(std::abs(value - exact) <= 1e-6 * exact + floor);
 }
@@ -146,15 +148,16 @@ TEST_CASE("parallel rectangle over a corner [1, B-3] and perpendicular rectangle
                                    y / std::sqrt(1 + y * y) * std::atan(x / std::sqrt(1 + y * y)));
     const double e = polygon_irradiance(rectangle(a, b, h), {0, 0, 0}, {0, 0, 1});
     CHECK(e == doctest::Approx(parallel).epsilon(1e-9));
-    // receiver at distance h in front of the rectangle's lower corner, its normal along the
-    // rectangle: rectangle in the plane y = h, width b along x, height a along z
+    // The receiver is at distance h in front of the rectangle's lower corner, with its normal along
+    // the rectangle. The rectangle lies in the plane y = h, with width b along x and height a along
+    // z.
     const std::vector<Vec3d> wall{{0, h, 0}, {0, h, a}, {b, h, a}, {b, h, 0}};
     const std::vector<Vec3d> facing(wall.rbegin(), wall.rend());
     const double ca = a / b, cc = h / b, root = std::sqrt(ca * ca + cc * cc);
     const double perpendicular = 0.5 * (std::atan(1 / cc) - cc / root * std::atan(1 / root));
     const double w = polygon_irradiance(wall, {0, 0, 0}, {0, 0, 1}) +
                      polygon_irradiance(facing, {0, 0, 0}, {0, 0, 1});
-    // far away the printed formula itself cancels
+    // Far away the printed formula itself suffers cancellation.
     CHECK(w == doctest::Approx(perpendicular).epsilon(h > 50 ? 1e-5 : 1e-8));
     CHECK(std::min(polygon_irradiance(wall, {}, {0, 0, 1}),
                    polygon_irradiance(facing, {}, {0, 0, 1})) == 0);
@@ -166,16 +169,17 @@ TEST_CASE("disk: on the axis, off the axis [1, B-13], perpendicular [1, B-15]") 
     const double on_axis = disk_irradiance({0, 0, h}, {0, 0, -1}, 1, {}, {0, 0, 1});
     CHECK(on_axis == doctest::Approx(pi / (1 + h * h)).epsilon(1e-12));
     for (const double offset : {1e-3, 0.3, 0.999, 1.7, 40.0}) {
-      // in units of the offset, as printed
+      // In units of the offset, as printed.
       const double hh = h / offset, r = 1 / offset, z = 1 + hh * hh + r * r;
       const double root = std::sqrt(z * z - 4 * r * r);
       const double b13 = pi / 2 * (1 - (z - 2 * r * r) / root);
       const double b15 = pi / 2 * hh * (z / root - 1);
       const Vec3d centre{offset, 0, h};
-      // the printed forms cancel where the factor is small
+      // The printed forms suffer cancellation where the factor is small.
       CHECK(disk_irradiance(centre, {0, 0, -1}, 1, {}, {0, 0, 1}) ==
             doctest::Approx(b13).epsilon(1e-9 + 1e-13 / b13));
-      // a normal along the plane sees the half of its horizon only: here all of the disk
+      // A normal parallel to the plane sees only half of it; here that half contains the whole
+      // disk.
       if (offset > 1)
         CHECK(disk_irradiance(centre, {0, 0, -1}, 1, {}, {1, 0, 0}) ==
               doctest::Approx(b15).epsilon(1e-9 + 1e-13 * (1 + hh) / b15));
@@ -213,7 +217,7 @@ TEST_CASE("rectangles from everywhere, receivers tilted through 180 degrees, aga
     for (size_t k = 0; k < directions.size(); ++k) {
       const Vec3d x{rounded(starts[k % starts.size()] + normalize(directions[k]) * d)};
       for (const Vec3d& unrounded : tilted_normals()) {
-        const Vec3d n{rounded(unrounded)};  // what the float entry is told
+        const Vec3d n{rounded(unrounded)};  // the normal that the float function receives
         const double exact = rectangle_reference(a, 0.7f, x, n);
         const double floor = 1e-9 * std::min(1.0, 1 / (d * d));
         check_close(polygon_irradiance(
@@ -272,7 +276,7 @@ TEST_CASE("parts sum to the whole: fans, cells of a parallelogram, and a mesh of
         sum += double(cell_irradiance(surface.parallelogram(), cell, x, n, Sides::both));
       }
     CHECK(std::abs(sum - exact) <= 2e-6 * exact + 1e-7 / (far * far));
-    // the mesh is one-sided: it gives the same from its front, nothing from behind
+    // The mesh is one-sided: the same value from its front, nothing from behind.
     const bool is_front = dot(whole[0].normal, Vec3d(x) - Vec3d(whole[0].centroid)) > 0;
     const double of_mesh = irradiance(parts, 0, Vec3d(x), Vec3d(n));
     CHECK(std::abs(of_mesh - (is_front ? exact : 0)) <= 1e-6 * exact + 1e-7 / (far * far));
@@ -280,7 +284,8 @@ TEST_CASE("parts sum to the whole: fans, cells of a parallelogram, and a mesh of
 }
 
 TEST_CASE("irradiance inside a closed room of sources is pi, whatever the normal") {
-  // a box of six faces seen from inside: Lambert's sums fill the hemisphere
+  // A box of six faces seen from inside; the terms of Lambert's formula must sum to the full
+  // hemisphere.
   Random random(8);
   const auto number = [&] { return random.next_double() * 1.8 - 0.9; };
   for (int round = 0; round < 100; ++round) {

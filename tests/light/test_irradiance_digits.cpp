@@ -1,5 +1,5 @@
-// Closed forms against quadrature where they cancel: slivers, grazing horizons, low over the
-// source's plane, far away.
+// Closed forms against quadrature where they suffer cancellation: slivers, grazing horizons,
+// receivers near the source's plane or far away.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ using namespace troffer::test;
 
 namespace {
 
-constexpr double least = 1e-10 * pi;  // irradiance that counts
+constexpr double least = 1e-10 * pi;  // irradiance below this is not compared
 
 struct Worst {
   double error = 0;
@@ -61,14 +61,14 @@ TEST_CASE("disks and spheres hold their digits") {
     const Vec3d m{std::sin(angle), 0, std::cos(angle)};
     const HardReceiver h = hard_receiver(r, {0, 0, 0}, m, radius);
     const Vec3d x(h.position), n(h.normal);
-    // Closer to the disk's plane the quadrature, not the closed form, gives out.
+    // Closer to the disk's plane the quadrature fails, not the closed form.
     if (std::abs(dot(x, m)) > 2e-3 * radius)
       disk.add(disk_irradiance({0, 0, 0}, m, radius, x, n, Sides::both),
                disk_reference({0, 0, 0}, m, radius, x, n));
     if (length(x) > radius * 1.001)
       sphere.add(sphere_irradiance({0, 0, 0}, radius, x, n),
                  sphere_reference({0, 0, 0}, radius, x, n));
-    // a sliver of the sphere above the horizon, or below it
+    // A sliver of the sphere above or below the horizon.
     const double distance = radius * std::pow(10.0, 0.01 + 2 * r.next_double());
     const double sine = radius / distance * (2 * r.next_double() - 1 < 0 ? -1 : 1) *
                         (1 - std::pow(10.0, -4 * r.next_double()));

@@ -1,5 +1,5 @@
-// Angles of photometric files: ends moved by rounding, tables that leave out a pole; and the number
-// of LM-63-2019 that is a code.
+// Angles in photometric files: end angles changed by rounding, tables without a pole, and the
+// LM-63-2019 file generation type.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -30,8 +30,8 @@ Read read(const std::string& text, const std::string& name = "a.ies") {
   return r;
 }
 
-// Three heights, as many planes as values; each plane has 5 cd at the nadir, `value` in the middle
-// and nothing at the end.
+// An IES file with three heights and one plane per value. Each plane has 5 cd at the nadir, `value`
+// in the middle and 0 at the end.
 std::string quarter(const std::string& heights, const std::string& turns,
                     const std::vector<int>& values, int type = 1) {
   std::string text =
@@ -41,7 +41,7 @@ std::string quarter(const std::string& heights, const std::string& turns,
   return text;
 }
 
-// In the plane at `turn_deg` (type C), `height_deg` from the nadir.
+// Intensity in the C plane turn_deg, at height_deg from the nadir (type C).
 double candela(const Luminaire& l, double turn_deg, double height_deg) {
   const double t = rad_from_deg(turn_deg), h = rad_from_deg(height_deg);
   return double(intensity(
@@ -67,7 +67,7 @@ TEST_CASE("LM-63-2019: the file generation type is a code; in older editions a f
       CHECK(flux(r.luminaire.web) == doctest::Approx(200 * pi).epsilon(1e-5));
       CHECK(r.warnings == 0);
     }
-  // No code of the standard: it does not multiply either, and is told.
+  // Not a code of the standard: it is no factor either, and causes a warning.
   const Read odd = read(even_ies("IES:LM-63-2019", "0.9"));
   CHECK(candela(odd.luminaire, 0, 30) == doctest::Approx(100));
   CHECK(odd.warnings == 1);
@@ -117,14 +117,14 @@ TEST_CASE("type C: planes that nearly end at 90 or 180 keep the symmetry") {
     CHECK(candela(r.luminaire, 270, 45) == doctest::Approx(10).epsilon(1e-3));
     CHECK(candela(r.luminaire, 180, 45) == doctest::Approx(15).epsilon(1e-3));
   }
-  // All round.
+  // Planes of a full turn.
   const Read round = read(quarter("0 45 90", "0.01 90 180 270 360.01", {10, 15, 20, 25, 10}));
   CHECK(candela(round.luminaire, 270, 45) == doctest::Approx(25).epsilon(1e-3));
   CHECK(round.warnings == 0);
 }
 
 TEST_CASE("planes in steps of less than two degrees are not taken for an end beside them") {
-  // 90 planes of a degree: the last is at 89, and no plane closes the quarter.
+  // 90 planes, one per degree: the last is at 89, so no plane closes the quarter.
   std::string turns;
   std::vector<int> values;
   for (int i = 0; i < 90; ++i) {
@@ -133,8 +133,8 @@ TEST_CASE("planes in steps of less than two degrees are not taken for an end bes
   }
   const Read r = read(quarter("0 45 90", turns, values));
   CHECK(candela(r.luminaire, 89, 45) == doctest::Approx(99).epsilon(1e-3));
-  CHECK(r.warnings == 1);  // planes do not go round
-  // 360 of them go round.
+  CHECK(r.warnings == 1);  // planes do not close a turn
+  // 360 planes close a full turn.
   turns.clear();
   values.clear();
   for (int i = 0; i < 360; ++i) {
@@ -164,10 +164,10 @@ TEST_CASE("vertical angles that begin beside the nadir go on to it") {
     CHECK(at_nadir(heights, warnings) == doctest::Approx(100));
     CHECK(warnings == 1);
   }
-  // A gap that no table has by its steps stays dark, and is told.
+  // A gap that the table's steps do not explain stays dark and causes a warning.
   CHECK(at_nadir("30 45 90", warnings) == 0);
   CHECK(warnings == 1);
-  // Light upwards alone has no nadir.
+  // Distributions above the horizontal have no nadir.
   CHECK(at_nadir("90 135 180", warnings) == 0);
   CHECK(warnings == 0);
   CHECK(at_nadir("90.01 135 179.99", warnings) == 0);
@@ -175,7 +175,7 @@ TEST_CASE("vertical angles that begin beside the nadir go on to it") {
 }
 
 TEST_CASE("a table by the middles of its zones has the flux of its zones") {
-  // An even hemisphere of 100 cd: 200 pi lm.
+  // A uniform hemisphere of 100 cd: 200 pi lm.
   std::string heights, values;
   for (int i = 0; i < 18; ++i) {
     heights += fmt::format("{} ", 2.5 + 5 * i);
@@ -184,7 +184,7 @@ TEST_CASE("a table by the middles of its zones has the flux of its zones") {
   const Read r = read("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 18 1 1 2 0 0 0\n1 1 10\n" + heights +
                       "\n0\n" + values + "\n");
   CHECK(flux(r.luminaire.web) == doctest::Approx(200 * pi).epsilon(1e-5));
-  CHECK(r.warnings == 2);  // both ends
+  CHECK(r.warnings == 2);  // one for each end
   CHECK(candela(r.luminaire, 0, 91) == 0);
 }
 
@@ -200,7 +200,7 @@ TEST_CASE("types A and B: angles that nearly begin at 0 stand for both sides") {
       CHECK(flux(web_of(heights, "0 45 90")) == doctest::Approx(lumens).epsilon(1e-3));
     for (const char* turns : {"0.01 45 90", "0 45 89.99", "0 45 90.01"})
       CHECK(flux(web_of("0 45 90", turns)) == doctest::Approx(lumens).epsilon(1e-3));
-    // From 2.5 on: the middle has the first value, on both sides.
+    // Angles begin at 2.5: the gap up to there takes the first value.
     CHECK(flux(web_of("2.5 45 90", "0 45 90")) == doctest::Approx(lumens).epsilon(0.1));
     CHECK(flux(web_of("0 45 90", "2.5 45 90")) == doctest::Approx(lumens).epsilon(0.1));
   }
@@ -245,6 +245,6 @@ TEST_CASE("angles beyond what rounding explains are refused") {
   }
   CHECK_THROWS_AS(read(quarter("0 45 182", "0 45 90", {10, 15, 20})), InputError);
   CHECK_THROWS_AS(read(quarter("-2 45 90", "0 45 90", {10, 15, 20})), InputError);
-  // Within a degree of the end, but not nearer than half of a step.
+  // Within a degree of the end, but farther than half a step.
   CHECK_THROWS_AS(read(quarter("0 179.9 180.8", "0 45 90", {10, 15, 20})), InputError);
 }

@@ -1,5 +1,6 @@
-// Photometric files as makers write them, by rule: all editions, types, symmetries, units, layouts
-// and line ends of LM-63 and EULUMDAT hold the same distribution, and are read as that.
+// Photometric files in the variants that makers write. All editions, types, symmetries, units,
+// layouts and line ends of LM-63 and EULUMDAT describe one distribution here, and must be read as
+// that.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -20,12 +21,12 @@ using namespace troffer;
 
 namespace {
 
-// Which C planes a file may leave out.
+// The C planes that a file may omit by symmetry.
 enum class Symmetry { none, round, about_c0, about_c90, both };
 constexpr Symmetry symmetries[] = {Symmetry::none, Symmetry::round, Symmetry::about_c0,
                                    Symmetry::about_c90, Symmetry::both};
 
-// cd at angles of type C.
+// Intensity in cd at angles of type C.
 double candela(Symmetry s, double c_deg, double gamma_deg) {
   const double c = rad_from_deg(c_deg), g = rad_from_deg(gamma_deg);
   const double uneven = s == Symmetry::round       ? 0
@@ -42,7 +43,7 @@ std::vector<double> steps(double first, double last, double step) {
   return v;
 }
 
-// Planes every 15 degrees that a file of that symmetry has.
+// Planes, every 15 degrees, that a file of this symmetry contains.
 std::vector<double> planes_of(Symmetry s) {
   switch (s) {
     case Symmetry::round:
@@ -61,7 +62,7 @@ std::vector<double> planes_of(Symmetry s) {
 
 const std::vector<double> heights = steps(0, 180, 10);
 
-// At all nodes of the whole distribution, and its lumens.
+// Checks the intensity at all nodes of the full distribution, and its flux.
 void check(const Luminaire& l, Symmetry s) {
   for (double c = 0; c < 360; c += 15)
     for (const double g : heights) {
@@ -71,11 +72,11 @@ void check(const Luminaire& l, Symmetry s) {
       CAPTURE(g);
       CHECK(double(intensity(l.web, w)) == doctest::Approx(candela(s, c, g)).epsilon(1e-4));
     }
-  // What is uneven goes round to nothing.
+  // The non-uniform part integrates to zero over a turn.
   CHECK(flux(l.web) == doctest::Approx(4 * pi * 1100).epsilon(1e-2));
 }
 
-// How one program prints numbers.
+// Number layout of one program's output.
 struct Layout {
   const char* separator;
   size_t per_line;
@@ -108,14 +109,14 @@ constexpr Edition editions[] = {
     {"any text\nof a maker", "TILT=Include\n2\n0"},
     {"\xef\xbb\xbfIESNA:LM-63-2002", "TILT=NONE"}};
 
-// One of type C, by numbers that choose; `unit`: 1 feet, 2 metres.
+// An LM-63 file of type C. unit: 1 for feet, 2 for metres.
 std::string ies(Symmetry s, const Edition& edition, const Layout& layout, int unit, bool descends) {
   const std::vector<double> planes = planes_of(s);
   std::vector<double> gammas = heights, candelas;
   if (descends) gammas.assign(heights.rbegin(), heights.rend());
   const double metre = unit == 1 ? 1 / .3048 : 1;
-  // Factors multiply: 2 × .8 × 1.25 until 1991. Later editions reserve the third number, or, in
-  // 2019, use it as a code: 2 × 1.
+  // Factors multiply: 2 × .8 × 1.25 until 1991. Later editions reserve the third number, or use it
+  // as a code in 2019: 2 × 1.
   const std::string_view head = edition.head;
   const bool is_coded = head.find("2019") != head.npos;
   const bool is_reserved =
@@ -133,7 +134,7 @@ std::string ies(Symmetry s, const Edition& edition, const Layout& layout, int un
   return text;
 }
 
-// planes: of a whole turn. Isym by the symmetry.
+// An EULUMDAT file; it always lists the planes of a full turn. Isym follows from the symmetry.
 std::string ldt(Symmetry s, const char* line_end, bool has_commas, const char* after) {
   constexpr int count = 24;
   const int isym = s == Symmetry::none        ? 0
@@ -141,7 +142,7 @@ std::string ldt(Symmetry s, const char* line_end, bool has_commas, const char* a
                    : s == Symmetry::about_c0  ? 2
                    : s == Symmetry::about_c90 ? 3
                                               : 4;
-  // Stockmar: the planes that are there begin at C0, with Isym 3 at C270.
+  // Stockmar's format: data begin at C0, or at C270 for Isym 3.
   const int first = isym == 3 ? 18 : 0;
   const int there = isym == 0 ? 24 : isym == 1 ? 1 : isym == 4 ? 7 : 13;
   std::vector<std::string> lines{"Maker", "1"};
@@ -229,7 +230,7 @@ TEST_CASE("LM-63: decimal commas, UTF-16, and factors of 0") {
     if (text[i] == '.') text[i] = ',';
   check(read_luminaire_text("a.ies", text, warnings), Symmetry::both);
   CHECK(warnings.entries().size() == 1);
-  // The multiplier and both of the ballast's.
+  // The multiplier and both ballast factors.
   text = ies(Symmetry::round, editions[0], plain, 2, false);
   text.replace(text.find(" 2 19"), 2, " 0");
   text.replace(text.find("0.8 1.25"), 8, "0 0");

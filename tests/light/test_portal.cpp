@@ -1,5 +1,5 @@
-// Rectangles through which alone a light at infinity is seen: what they show, and how directions
-// through them are drawn.
+// Portals: rectangles through which alone an environment light is seen. Tests what they show and
+// how directions through them are sampled.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -18,10 +18,11 @@ using namespace troffer::test;
 
 namespace {
 
-// 2 × 1 m at x = 3, seen from where x is less.
+// 2 × 1 m at x = 3, facing receivers at x < 3.
 const std::vector<Vec3> window = {{3, -1, 1}, {3, -1, 2}, {3, 1, 2}, {3, 1, 1}};
 
-// Bright in a few texels, black in others.
+// A floor and an environment light with a portal. has_image: the light is an image, very bright in
+// a few texels and black in others.
 Scene with_portal(bool has_image, const std::vector<Vec3>& portal = window) {
   Scene s;
   add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-3, -4, 0}, {3, -4, 0}, {3, 4, 0}, {-3, 4, 0}});
@@ -44,7 +45,7 @@ Scene with_portal(bool has_image, const std::vector<Vec3>& portal = window) {
 
 const Vec3 places[] = {{0, 0, 0}, {2.9f, 0.5f, 1.2f}, {-2, 3, 2.5f}, {2.99f, -3, 0.1f}};
 
-// Where the ray meets the rectangle, in [0,1]²; false: not at all, or from outside.
+// Point where the ray meets the rectangle, in [0,1]². Returns false if it misses or starts outside.
 bool meets(const Vec3& x, const Vec3& wi, Vec2& at) {
   if (!(wi.x > 0) || !(x.x < 3)) return false;
   const float t = (3 - x.x) / wi.x;
@@ -77,7 +78,7 @@ TEST_CASE("directions through a portal fill it as their density says, from every
         const size_t b = std::min(n_bins - 1, size_t(std::clamp(at.y, 0.0f, 1.0f) * n_bins));
         ++observed[b * n_bins + a];
         if (i > 500) continue;
-        // A sample may lie at the edge of a cell of the table, where the density jumps.
+        // The density jumps at edges of the table's cells, where a sample may lie.
         const float pdf = pdf_solid_angle(s, lights[0], x, out.wi, out.distance);
         CHECK((pdf > 0 || at.x < 1e-5f || at.x > 1 - 1e-5f || at.y < 1e-5f || at.y > 1 - 1e-5f));
         CHECK(out.radiance == radiance_beyond(s, s.lights[0], out.wi));
@@ -111,7 +112,7 @@ TEST_CASE("an image is drawn through a portal in proportion to what it shows") {
   open.lights[0].portal.clear();
   const LightPrimitives through(s), all(open);
   const Vec3 x = places[0];
-  // Of the integral of the luminance over what the portal shows.
+  // Estimates the integral of the luminance that the portal shows.
   const auto draw = [&](const LightPrimitive& p, double& mean, double& square) {
     Random random(9);
     constexpr int n = 20000;
@@ -146,7 +147,7 @@ TEST_CASE("beside a portal and behind it there is no light") {
   CHECK(!sample(s, p, {3, 0, 1.5f}, {0.5f, 0.5f}, out));
   CHECK(!sample(s, p, {4, 0, 1.5f}, {0.5f, 0.5f}, out));
   CHECK(pdf_solid_angle(s, p, {4, 0, 1.5f}, {1, 0, 0}, out.distance) == 0);
-  // The power is what enters.
+  // The power is what enters through the portal.
   CHECK(double(p.power) == doctest::Approx(2 * pi * 2));
 }
 
@@ -211,7 +212,7 @@ TEST_CASE("the frame of a portal hides what it does not show, as far as it reach
     CAPTURE(i);
     CHECK(met == (is_shown ? 0 : 1));
     (is_shown ? shown : hidden) += 1;
-    // A proof holds for the ray in its middle, and for all that meet the plane so near.
+    // A proof must hold for the ray in the middle, and for nearby places too.
     Box box;
     box.grow(x - Vec3{.01f});
     box.grow(x + Vec3{.01f});

@@ -1,4 +1,4 @@
-// Points of a rectangle for many receivers at a stroke, against sample().
+// points_of_rectangle() against sample().
 #include <doctest/doctest.h>
 
 #include <array>
@@ -69,7 +69,7 @@ TEST_CASE("a rectangle's points for many receivers are those chosen one by one")
       const bool is_valid = sample(p, r.vector(0, i), {r.u[i], r.v[i]}, one);
       if (inverse_pdf[i] < 0) {
         ++untold;
-        // A thousandth of the way off its plane, or seen too small.
+        // Allowed only close to the rectangle's plane or for a small solid angle.
         CHECK((!is_valid || std::abs(r.vector(0, i).z - 3) < 0.13f || one.pdf_solid_angle > 490));
         continue;
       }

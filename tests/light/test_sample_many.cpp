@@ -1,4 +1,4 @@
-// sample_many against sample: the same points and densities, whatever shares the batch.
+// sample_many() against sample(): the same points and densities, independent of the batch.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using namespace troffer;
 
 namespace {
 
-// A parallelogram that shines both ways, and a sphere.
+// Adds a two-sided parallelogram and a sphere.
 void add_slanted_and_round(Scene& s) {
   const uint32_t black = test::add_diffuse(s, Rgb{0});
   test::make_light(
@@ -44,7 +44,7 @@ TEST_CASE("many points at a stroke are those chosen one by one") {
   std::vector<float> u(n), v(n);
   for (size_t i = 0; i < n; ++i) {
     primitives[i] = random.next_u32() % 4;
-    // near and far, over and under, close to the plane of the light
+    // Near and far, above and below, and close to the light's plane.
     const float r = 4 * random.next_float() * random.next_float();
     receivers[i] = sphere_from_square(random.next_vec2()) * r + Vec3{0, 0, 2};
     u[i] = random.next_float();
@@ -72,7 +72,7 @@ TEST_CASE("many points at a stroke are those chosen one by one") {
   }
   CHECK(valid > n / 3);
 
-  // alone in a batch: the same bits
+  // Alone in a batch, a point must have the same bits.
   for (size_t i = 0; i < 300; ++i) {
     LightSample alone;
     uint8_t ok = 2;
@@ -94,7 +94,7 @@ TEST_CASE("points for one receiver are those chosen one by one") {
   size_t faced = 0, turned = 0;
   for (int at = 0; at < 600; ++at) {
     const LightPrimitive& p = lights[random.next_u32() % 3];
-    const float r = at % 5 == 0 ? 100 : 4;  // points by area, by solid angle
+    const float r = at % 5 == 0 ? 100 : 4;  // sampling by area, or by solid angle
     const Vec3 x =
         sphere_from_square(random.next_vec2()) * (r * random.next_float()) + Vec3{0, 0, 2};
     std::vector<float> u(n), v(n);

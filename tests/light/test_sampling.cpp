@@ -1,6 +1,5 @@
-// Points on lights: what `sample` does is what `pdf_solid_angle` says (χ²), the density
-// integrates to one, the inverse inverts, and the estimate of irradiance agrees with the closed
-// form.
+// Sample points on lights. Samples follow pdf_solid_angle() (χ² test), the density integrates to
+// one, the inverse inverts, and estimated irradiance agrees with the closed form.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -16,15 +15,15 @@ using namespace troffer::test;
 
 namespace {
 
-// Receivers in the flat sources' coordinates: over the middle at all distances, close, over a
-// corner, beside the source near its plane, edge-on far away, beyond the change to area sampling.
+// Receivers in the flat lights' coordinates: over the middle at all distances, over a corner,
+// beside the light near its plane, edge-on far away, and beyond the change to sampling by area.
 const std::vector<Vec3d> flat_receivers{{0.45, 0.4, 0.5},   {0.45, 0.4, 0.05}, {0.3, 0.08, 0.002},
                                         {0.02, 0.03, 0.01}, {1.6, 0.3, 0.02},  {1.6, -0.3, 1e-4},
                                         {-0.4, 0.5, 0.3},   {3, 2, 1.5},       {8, 1, 0.05},
                                         {0.5, -11, 9},      {0.2, 0.1, 15},    {25, 5, 12},
                                         {40, -60, 0.8},     {100, 300, 700},   {0.5, 0.05, 2e-4}};
 
-// Grid lines on [0,1] that crowd geometrically around `focus`.
+// Grid lines on [0,1], geometrically denser towards `focus`.
 std::vector<double> crowded_lines(double focus, double finest) {
   std::vector<double> lines{0, 1};
   for (double step = finest; step < 1; step *= 1.7)
@@ -45,7 +44,7 @@ size_t bin_of(const std::vector<double>& lines, double v) {
   return std::min(i, lines.size() - 2);
 }
 
-// Density over the (u,v) of SourceSurface, which keeps area: pdf_solid_angle cos / d² area.
+// Density over the (u,v) of SourceSurface, which preserves area: pdf_solid_angle cos / d² area.
 double density_uv(const LightPrimitive& p, const SourceSurface& surface, const Vec3& x,
                   const Vec2d& uv) {
   const Vec3d to_point = Vec3d(surface.point_at(Vec2(uv)).point) - Vec3d(x);
@@ -56,7 +55,7 @@ double density_uv(const LightPrimitive& p, const SourceSurface& surface, const V
   return double(pdf) * height / (d * d * d) * surface.area();
 }
 
-constexpr int chi_square_count = 6 * 15 * 2 + 20;  // at least as many as are asked in this file
+constexpr int chi_square_count = 6 * 15 * 2 + 20;  // at least the number of χ² tests in this file
 
 ChiSquareResult flat_chi_square(const Scene& scene, const Vec3& x, uint64_t seed) {
   const LightPrimitives primitives(scene);
@@ -121,8 +120,8 @@ TEST_CASE("samples on a sphere follow their density, inside and outside") {
     const Vec3d axis = normalize(Vec3d{0.2, 0.9, -0.4});
     const Vec3 x = pose.world(axis * (0.5 * distance));
     const Framed frame(normalize(Vec3d(x) - Vec3d(p.centroid) + axis * 1e-30));
-    // The visible part, by the cosine of the angle at the centre between point and receiver; for a
-    // near sphere most of the density lies at cosines near 1, hence the square.
+    // The visible part, by the cosine at the centre between point and receiver. For a near sphere
+    // most of the density is at cosines near 1, hence the square.
     const double true_distance = length(Vec3d(x) - Vec3d(p.centroid)) / 0.5;
     const double least = is_inside ? -1 : 1 / true_distance;
     const auto cosine_at = [&](double t) { return 1 - (1 - least) * t * t; };
@@ -132,7 +131,7 @@ TEST_CASE("samples on a sphere follow their density, inside and outside") {
       LightSample s;
       REQUIRE(sample(p, x, random.next_vec2(), s));
       CHECK(s.is_front);
-      // from the direction: the point itself is rounded to world coordinates
+      // Computed from the direction, because the point itself is rounded in world space.
       const Vec3d q =
           frame.to_local((Vec3d(x) - Vec3d(p.centroid) + Vec3d(s.wi) * double(s.distance)) / 0.5);
       const double t = std::sqrt(std::clamp((1 - q.z) / (1 - least), 0.0, 1.0));
@@ -232,7 +231,8 @@ TEST_CASE("the inverse of sampling inverts") {
   for (const NamedScene& s : scenes) {
     const LightPrimitives primitives(s.scene);
     for (const Vec3d& r : flat_receivers) {
-      // Rounding of the point in world space moves u by its size times the density per area.
+      // Rounding of the point in world space changes u by the rounding error times the density per
+      // area.
       const Vec3 x = pose.world(r);
       if (s.name == "hollow sphere" && length(r) > 29) continue;
       if (s.name == "sphere" && length(r) < 0.21) continue;
@@ -245,7 +245,7 @@ TEST_CASE("the inverse of sampling inverts") {
         const Vec2 back = square_from_point(primitives[0], x, e.point);
         double du = double(std::abs(back.x - u.x));
         double dv = double(std::abs(back.y - u.y));
-        if (s.name != "square") {  // the seam of an azimuth
+        if (s.name != "square") {  // azimuths wrap around
           du = std::min(du, 1 - du);
           dv = std::min(dv, 1 - dv);
         }
@@ -287,7 +287,7 @@ TEST_CASE("the mean of cos / pdf is the closed-form irradiance") {
         const double count = side * side, mean = sum / count;
         const double deviation = std::sqrt(std::max(0.0, squares / count - mean * mean) / count);
         const double exact = irradiance(primitives[0], Vec3d(x), n);
-        // stratified: the error is far below this independent-samples deviation
+        // Samples are stratified, so the error is far below this deviation of independent samples.
         CHECK_MESSAGE(std::abs(mean - exact) <= 3 * deviation + 2e-5 * exact,
                       s.name << " from (" << r.x << ", " << r.y << ", " << r.z << ") tilt " << tilt
                              << ": " << mean << " not " << exact << " ± " << deviation);

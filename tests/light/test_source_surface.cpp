@@ -1,4 +1,5 @@
-// The unit square on whole sources, cells, bounds; pieces of sources and the way back to them.
+// SourceSurface: the unit square on whole lights, cells and bounds. LightPrimitives: pieces of
+// lights, and lookup of pieces from hits.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -42,7 +43,7 @@ TEST_CASE("point_at and uv_at are inverse, normals are unit, points lie on the p
       const SourcePoint p = surface.point_at(uv);
       CHECK(length(p.normal) == doctest::Approx(1).epsilon(1e-5));
       const Vec2 back = surface.uv_at(p.point, p.triangle);
-      // close to a fan's apex or to a pole u is not determined by the point
+      // Near a fan's apex or a pole, the point does not determine u.
       const float v_weight = s.name == "sphere" || s.name == "hollow sphere"
                                  ? std::sqrt(uv.y * (1 - uv.y))
                                  : std::sqrt(uv.y);
@@ -54,7 +55,7 @@ TEST_CASE("point_at and uv_at are inverse, normals are unit, points lie on the p
 }
 
 TEST_CASE("the square keeps area: as many points fall left of any line as there is area") {
-  // χ² over triangles of the mesh by index, and over halves of disk and sphere by geometry
+  // χ² test over triangles of the mesh by index, and over halves of disk and sphere by geometry.
   const auto scenes = all_scenes();
   Random random(2);
   const int n = 40000;
@@ -81,7 +82,7 @@ TEST_CASE("the square keeps area: as many points fall left of any line as there 
   const auto result = chi_square_test(observed, expected, 1, 1e-4);
   CHECK_MESSAGE(result.is_accepted, result.text());
   for (size_t k = 2; k < scenes.size() - 1; ++k) {
-    // the mean point of uniform points is the centroid
+    // The mean of uniform points is the centroid.
     const SourceSurface s(scenes[k].scene, 0);
     const LightPrimitives p(scenes[k].scene);
     Vec3d sum;
@@ -208,19 +209,20 @@ TEST_CASE("a textured triangle's mean radiance is the texture's mean over it") {
   t.channels = 1;
   t.is_srgb = false;
   for (int y = 0; y < 8; ++y)
-    for (int x = 0; x < 8; ++x) t.texels_float.push_back(float(x) / 8 + 1.0f / 16);  // = u
+    for (int x = 0; x < 8; ++x) t.texels_float.push_back(float(x) / 8 + 1.0f / 16);  // equals u
   s.textures.push_back(t);
   s.lights[0].texture = 0;
   const LightPrimitives p(s);
   REQUIRE(p.size() == 1);
   CHECK(p[0].is_textured);
-  // mean of u over the triangle (0,0) (1,0) (0,1) is 1/3; bilinear wrapping at the edges aside
+  // The mean of u over the triangle (0,0) (1,0) (0,1) is 1/3, except for bilinear wrapping at the
+  // edges.
   CHECK(p[0].mean_radiance.r == doctest::Approx(2.0 / 3).epsilon(0.1));
 }
 
 namespace {
 
-// A triangle source over the texture square's lower left half, and `lit` texels of an image.
+// A triangle light over the lower left half of the texture square, with an image of `lit` texels.
 Scene triangle_with_image(int size, const std::vector<std::pair<int, int>>& lit) {
   Scene s = mesh_scene({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
   s.meshes[0].uvs = {{0, 0}, {1, 0}, {0, 1}};
@@ -247,7 +249,8 @@ TEST_CASE("a source lit in one texel only has power") {
 }
 
 TEST_CASE("holes of an alpha mask take their part of a source's power") {
-  Scene s = triangle_with_image(2, {{0, 0}, {1, 0}});  // holes where v > 1/2: a quarter
+  // holes where v > 1/2: a quarter of the triangle
+  Scene s = triangle_with_image(2, {{0, 0}, {1, 0}});
   s.materials.resize(1);
   s.materials[0].is_alpha_masked = true;
   s.materials[0].alpha = {1, 0, 0};

@@ -1,5 +1,5 @@
-// Points, spots and lights at infinity: samples against densities and closed forms, powers against
-// quadrature.
+// Point and spot lights and lights at infinity: samples against densities and closed forms, powers
+// against quadrature.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -40,7 +40,7 @@ TEST_CASE("an environment's samples fill the sphere as their density says, and c
   const LightPrimitive& p = lights[lights.of_light(3).first];
   constexpr size_t nz = 12, na = 24;
   constexpr int n = 100000;
-  // Equal bins of z and azimuth have equal solid angles: expectations come from the density.
+  // Equal bins of z and azimuth have equal solid angles. Expected counts come from the density.
   std::vector<double> observed(nz * na), expected(nz * na);
   Random random(3);
   double integral = 0;
@@ -55,7 +55,7 @@ TEST_CASE("an environment's samples fill the sphere as their density says, and c
     REQUIRE(std::isinf(sample_of.distance));
     const Vec2 back = square_from_sphere(wi);
     REQUIRE(std::abs(back.x - u.x) < 1e-5f);
-    REQUIRE(std::abs(back.y - u.y) < 1e-2f);  // near the poles azimuths are coarse
+    REQUIRE(std::abs(back.y - u.y) < 1e-2f);  // near the poles, azimuths are imprecise
     const auto z = std::min(nz - 1, size_t((double(wi.z) + 1) / 2 * nz));
     const double azimuth = std::atan2(double(wi.y), double(wi.x)) / (2 * pi);
     const auto a = std::min(na - 1, size_t((azimuth < 0 ? azimuth + 1 : azimuth) * na));
@@ -94,7 +94,7 @@ TEST_CASE("a point, a spot and a distant light send what their closed forms say"
     CHECK(double(dot(at.wi, Vec3(normalize(to)))) == doctest::Approx(1));
     CHECK(double(at.radiance.g) == doctest::Approx(6 / d2));
 
-    // The spot's axis is (.3, .2, -1): a cubic in the cosine between .9 and .6.
+    // The spot's axis is (.3, .2, -1); its falloff is a cubic in the cosine between .9 and .6.
     const double cosine = dot(-to, normalize(Vec3d{0.3, 0.2, -1})) / std::sqrt(d2);
     const double t = std::clamp((cosine - 0.6) / 0.3, 0.0, 1.0);
     const double share = t * t * (3 - 2 * t);
@@ -125,7 +125,7 @@ TEST_CASE("the power of a light without surface is the flux that it sends") {
   const LightPrimitives lights(s);
   const Box box = bounds(s);
   const double r = 0.5 * double(box.diagonal());
-  // Of point and spot, by quadrature over directions at distance 1.
+  // Power of point and spot, by quadrature over directions at distance 1.
   for (uint32_t p : {0u, 1u}) {
     double flux = 0;
     constexpr int n = 400;
@@ -199,8 +199,8 @@ TEST_CASE("certificate shapes: flat, spheres that shine outwards, none") {
     CHECK(certificate_shape(s, s.lights[i]) == expected[i]);
 }
 
-// Radiant intensity at the angle a: (outer - a) / (outer - inner) between the two, and its integral
-// over all directions by the midpoint rule.
+// Radiant intensity at angle a is (outer - a) / (outer - inner) between the two angles. Its
+// integral over all directions is computed by the midpoint rule.
 TEST_CASE("a spot that fades linearly in the angle, as Mitsuba's") {
   Scene s;
   add_spot(s, lamp, {0, 0, -1}, float(std::cos(rad_from_deg(15.0))),

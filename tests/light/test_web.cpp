@@ -1,4 +1,4 @@
-// Measured distributions as the lights have them: directions by type of photometry, and lumens.
+// Photometric webs as lights use them: directions for each type of photometry, and flux in lumens.
 #include "light/web.h"
 
 #include <doctest/doctest.h>
@@ -28,7 +28,7 @@ LightWeb read(const std::string& text) {
 
 TEST_CASE("types A and B: their angles from the beam, upwards and to the right") {
   const double v = rad_from_deg(30.0), h = rad_from_deg(45.0);
-  // Upwards is C0 (x), right C270 (-y), seen from behind.
+  // Seen from behind the beam, up is C0 (x) and right is C270 (-y).
   const Vec3d of_a{std::sin(v), -std::cos(v) * std::sin(h), std::cos(v) * std::cos(h)};
   const Vec3d of_b{std::cos(h) * std::sin(v), -std::sin(h), std::cos(h) * std::cos(v)};
   for (const auto& [type, w] : {std::pair{3, of_a}, {2, of_b}}) {
@@ -38,7 +38,7 @@ TEST_CASE("types A and B: their angles from the beam, upwards and to the right")
     CHECK(double(intensity(l, Vec3(w * Vec3d{-1, -1, 1}))) == doctest::Approx(520));
     CHECK(double(intensity(l, {0, 0, 1})) == doctest::Approx(1000));
     CHECK(intensity(l, {0, 0, -1}) == 0);
-    // Half of it, and what mirrors that.
+    // Files with half of the planes: the other half mirrors them.
     const LightWeb half = read(beam_ies(type, {-90, -30, 0, 30, 90}, {0, 45, 90}));
     CHECK(double(intensity(half, Vec3(w))) == doctest::Approx(1480));
     CHECK(double(intensity(half, Vec3(w * Vec3d{1, -1, 1}))) == doctest::Approx(1480));
@@ -53,7 +53,7 @@ TEST_CASE("types A and B: their angles from the beam, upwards and to the right")
 }
 
 TEST_CASE("lumens of all types are recovered within a thousandth") {
-  // I = 1000 cos³ of the angle from the beam: 2 pi 1000 / 4 lm.
+  // I = 1000 cos³ of the angle from the beam gives 2 pi 1000 / 4 lm.
   for (const int type : {1, 2, 3}) {
     std::string text =
         "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 181 181 " + std::to_string(type) + " 2 0 0 0 1 1 10\n";
@@ -90,7 +90,7 @@ TEST_CASE("what leaves the faces of an opening adds up to the flux") {
 
 namespace {
 
-// Ascending, some steps ten thousand times as wide as others.
+// Ascending angles, some steps ten thousand times as wide as others.
 std::vector<float> uneven_angles(Random& random, float from, float to, size_t n) {
   std::vector<float> steps(n), angles{from};
   float all = 0;
@@ -108,12 +108,12 @@ TEST_CASE("looked up for many points, a web shines as by one search for each") {
   for (int trial = 0; trial < 30; ++trial) {
     LightWeb web;
     web.pole = WebPole(trial % 3);
-    // Whole, or without what is near the pole, the equator and half of the turns.
+    // The full range, or a part without the pole, the equator and half of the turns.
     const bool is_whole = trial % 2 == 0;
     const size_t wanted = trial < 3 ? 1 : trial < 10 ? 20 : 700;
     web.heights_rad = uneven_angles(random, is_whole ? 0 : .3f, is_whole ? pi_f : 1.4f, wanted);
     web.turns_rad = uneven_angles(random, is_whole ? -pi_f : .2f, is_whole ? pi_f : 4.2f, wanted);
-    // smooth: rounding of angles must not be seen
+    // Smooth, so that rounding of angles has no visible effect.
     const size_t n = web.heights_rad.size();
     for (size_t i = 0; i < web.turns_rad.size(); ++i)
       for (size_t j = 0; j < n; ++j)

@@ -1,4 +1,5 @@
-// The light tree: probabilities that add up, are what choose() does, and leave no source out.
+// LightTree: probabilities sum to one, match the frequencies of choose(), and are positive for
+// every light that shines.
 #include "base/warp.h"
 #include "select/light_tree.h"
 #include "support/scenes.h"
@@ -26,12 +27,12 @@ double sum_of_pmf(const LightTree& tree, const LightPrimitives& lights, const Re
   return sum;
 }
 
-// The two walk the tree in opposite directions and round differently.
+// choose() and pmf() walk the tree in opposite directions and round differently.
 bool is_same(float a, float b) {
   return std::abs(a - b) <= 3e-6f * std::max(a, b);
 }
 
-// Irradiance from either side where both count.
+// Irradiance; from both sides if both_sides.
 double exact(const LightPrimitive& p, const Receiver& at, bool both_sides) {
   const Vec3d x(at.position), n(at.normal);
   return irradiance(p, x, n) + (both_sides ? irradiance(p, x, -n) : 0);
@@ -54,8 +55,8 @@ TEST_CASE("probabilities add up to one or, where nothing can shine, to zero") {
       const LightChoice c = tree.choose(at.position, at.normal, both_sides, r.next_float());
       CAPTURE(seed);
       CAPTURE(i);
-      // Choosing walks down the tree: where it meets two dark children below a lit parent it gives
-      // up, so that sums between 0 and 1 are sound, and above 1 never.
+      // choose() gives up if it meets two dark children below a lit parent. So sums between 0 and 1
+      // are allowed, but never above 1.
       CHECK(sum < 1 + 1e-4);
       CHECK(sum >= double(c.pmf) * (1 - 1e-5));
       ones += std::abs(sum - 1) < 1e-4;
@@ -94,7 +95,7 @@ TEST_CASE("choose() draws with the frequencies that pmf() promises, and leaves a
     Receiver at;
     do at = random_receiver(lights, r);
     while (sum_of_pmf(tree, lights, at, both_sides) < 0.5);
-    // The last bin counts the draws that choose nothing.
+    // The last bin counts choices of no primitive.
     std::vector<double> observed(lights.size() + 1), expected(lights.size() + 1), rest(bins);
     double chosen = 0;
     for (uint32_t p = 0; p < lights.size(); ++p)
@@ -106,7 +107,7 @@ TEST_CASE("choose() draws with the frequencies that pmf() promises, and leaves a
     for (int i = 0; i < draws; ++i) {
       const LightChoice c = tree.choose(at.position, at.normal, both_sides, r.next_float());
       ++observed[c.pmf > 0 ? c.primitive : lights.size()];
-      if (!(c.pmf > 0.01f)) continue;  // the number is short of bits after rare choices
+      if (!(c.pmf > 0.01f)) continue;  // after rare choices u has few random bits left
       ++rest[size_t(c.u * bins)];
       ++chosen;
     }
@@ -131,7 +132,7 @@ TEST_CASE("no source that shines on a point has probability zero") {
       const Receiver at = random_receiver(lights, r);
       const bool both_sides = i % 3 == 0;
       for (uint32_t p = 0; p < lights.size(); ++p) {
-        // Under 1e-10 sr the receiver's single-precision position decides.
+        // Below 1e-10 sr, the receiver's rounding to single precision decides.
         if (!(exact(lights[p], at, both_sides) > 1e-10)) continue;
         ++lit;
         const float pmf = tree.pmf(at.position, at.normal, both_sides, p);
@@ -180,10 +181,10 @@ TEST_CASE("probabilities follow irradiance: the near source is preferred") {
   CHECK(tree.pmf({0, 0, 0}, {0, 0, 1}, false, 0) > 0.95f);
   CHECK(tree.pmf({10, 0, 0}, {0, 0, 1}, false, 1) > 0.95f);
   CHECK(tree.pmf({5, 0, 0}, {0, 0, 1}, false, 0) == doctest::Approx(0.5).epsilon(0.01));
-  // Turned away from both, neither can shine.
+  // The normal faces away from both.
   CHECK(tree.choose({5, 0, 0}, {0, 0, -1}, false, 0.3f).pmf == 0);
   CHECK(tree.choose({5, 0, 0}, {0, 0, -1}, true, 0.3f).pmf > 0);
-  // Above both, behind their fronts.
+  // Above both, on their back sides.
   CHECK(tree.choose({5, 0, 9}, {0, 0, -1}, false, 0.3f).pmf == 0);
 }
 
@@ -257,7 +258,7 @@ TEST_CASE("a tree over one emitter's primitives alone") {
 }
 
 TEST_CASE("ten thousand primitives: built within a second, all within reach") {
-  // Strung out by powers of two, which makes the most lopsided splits, and scattered at random.
+  // In a row by powers of two, which makes the most unbalanced splits, and scattered at random.
   for (const bool is_strung : {false, true}) {
     Scene s;
     const uint32_t m = add_diffuse(s, Rgb{0});

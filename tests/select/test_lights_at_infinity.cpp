@@ -1,4 +1,4 @@
-// The light tree with lights at infinity beside it.
+// LightTree with lights at infinity.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ using namespace troffer::test;
 
 namespace {
 
-// Distant lights from above and from below, an environment, and lights that have a place.
+// Distant lights from above and from below, an environment light, and lights with a place.
 Scene mixed_lights(uint64_t seed, int placed) {
   Scene s = placed > 0 ? random_lights(seed, placed) : Scene{};
   add_distant(s, {0.2f, 0.1f, -1}, Rgb{3});
@@ -58,7 +58,7 @@ TEST_CASE("with lights at infinity probabilities add up to one, and choose() has
       double beside = 0;
       for (const uint32_t p : lights.at_infinity())
         beside += tree.pmf(at.position, at.normal, both_sides, p) > 0;
-      // The tree's own sum is below one where it meets two dark children below a lit parent.
+      // The tree's own sum is below one if choose() meets two dark children below a lit parent.
       const double in_tree = sum_of_pmf(placed_tree, placed_lights, at, both_sides);
       CHECK(sum < 1 + 1e-5);
       CHECK(beside >= (both_sides ? 3 : 1));
