@@ -91,8 +91,8 @@ struct CellInput {
   ProcessGroup* group = nullptr;  // processes that make the same cells together; may be null
   // Without a view, limit of the number of cells: beyond it make_integrator() returns null.
   double most_cells = std::numeric_limits<double>::infinity();
-  // How measuring points gather from the cells. If set, the cells' rays also look closely at narrow
-  // things (CellMap::look_closely).
+  // Gathering at measuring points. If set, rays also resolve sub-cell features: they do not read
+  // cells there, but sample lights and go on (CellMap::look_closely).
   GatheringPoints points{};
 };
 

@@ -19,8 +19,8 @@ namespace {
 // light. Measured on kj92room: noise² × rays is 40 % less than with survival = throughput.
 constexpr uint32_t roulette_first_vertex = 2;
 constexpr float roulette_threshold = 0.25f;
-// Where surfaces absorb nothing, throughput alone never ends a path. From this vertex on, at
-// least 5 % end at each vertex.
+// Surfaces that absorb nothing would let a path go on for ever by its throughput alone. From this
+// vertex on, at least 5 % end at each vertex.
 constexpr uint32_t long_path = 32;
 constexpr float long_path_survival = 0.95f;
 // Paths of one wave: with their vertices they fit into the second-level cache of a core.
