@@ -1,4 +1,4 @@
-// How cells light each other: rows of a sparse transport matrix, estimated by rays.
+// Light between cells: rows of a sparse transport matrix, estimated by rays.
 //
 // E_i = D_i + 1/M_i Σ_k w_k E_j(k)
 //
@@ -16,7 +16,7 @@
 
 namespace troffer {
 
-// What one ray sees: the cell j(k) and the weight w_k.
+// Result of one ray: the cell j(k) and the weight w_k.
 struct RowEntry {
   uint32_t cell = 0;
   Rgb weight;

@@ -1,4 +1,4 @@
-// What making cells leaves for later runs: cells, their rows and direct light. Another view, or a
+// Cells that are kept for later runs, with their rows and direct light. Another view, or a
 // later run, starts from it and adds what it sees beyond (docs/cells.md, "Walk-throughs"). Kept in
 // a file (`--solution`).
 #pragma once
