@@ -1,5 +1,5 @@
-// Solves the balance of light in a room, E = D + W E: E and D are irradiance of cells, in any unit,
-// and W carries light from cell to cell. Used by cell_rows.cpp.
+// Solves the balance of light in a room, E = D + W E. E and D are irradiance of cells, in any unit;
+// W carries light from cell to cell. Used by cell_rows.cpp.
 //
 // References: [1] Eisenstat, Elman & Schultz, "Variational Iterative Methods for Nonsymmetric
 // Systems of Linear Equations", SIAM J. Numer. Anal. 20(2), 1983 (ORTHOMIN).

@@ -234,8 +234,8 @@ bool CellMap::is_divided(const CellHit& hit, const CellOutline& outline, float s
 }
 
 // True if the surface is not much wider than a cell along one of the voxel's axes, because it ends
-// or bends away at both sides. The place on it does not matter: a cell's light is that of few hits,
-// and cells made at the darker edge must not differ in kind from those at the brighter one.
+// or bends away at both sides. The place on it does not matter. A cell's light is that of few hits,
+// so cells at the darker edge must not be marked differently from those at the brighter one.
 bool CellMap::ends_both_ways(const Vec3& position, const Vec3& normal, float size) const {
   const size_t up = face_of(normal) / 2;
   const Vec3 above = normal * (lift * size);

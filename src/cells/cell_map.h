@@ -3,10 +3,10 @@
 //
 // A hit belongs to a cell of its voxel and of the axis direction to which its normal points most.
 // Voxels have the scene's cell size, half of it where the ray came from nearby, twice or more where
-// it came from far away. Among several cells of a voxel it takes the first compatible one: in one
-// plane with it or on one curved surface, and visible from it if something stands in the voxel. So
-// neither the two sides of a thin wall share a cell, nor the boards of a shelf, nor two rooms on
-// one floor.
+// it came from far away. Among several cells of a voxel it takes the first compatible one. That is
+// in one plane with it or on one curved surface, and visible from it if something stands in the
+// voxel. So neither the two sides of a thin wall share a cell, nor the boards of a shelf, nor two
+// rooms on one floor.
 //
 // Where direct light from nearby sources differs much within a voxel (a lamp close to a wall),
 // cells of half the size replace one, and so on.
@@ -89,9 +89,8 @@ class CellMap {
   }
   const Vec3& position(size_t cell) const { return anchors_[cell].position; }
   // Switches the marking of narrow cells on or off, for existing and further cells. A cell is
-  // narrow on a sub-cell feature: a thing about as narrow as the cell (a slat, a bar, a lip), or
-  // bent as much (a thin pillar). Light differs between its sides, which are seen from different
-  // places.
+  // narrow on a sub-cell feature, such as a slat, a bar or a lip about as narrow as the cell, or a
+  // thin pillar. Light differs between its sides, which are seen from different places.
   void look_closely(bool looks, int threads);
   bool is_narrow(size_t cell) const { return anchors_[cell].is_narrow; }
   // True if a cell made for the hit of a ray of this length would be narrow.

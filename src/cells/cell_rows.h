@@ -34,8 +34,8 @@ struct RowPart {
 
 struct CellLight {
   std::vector<Rgb> irradiance;
-  // One draw of the noise of each cell: half the difference of what the two halves of its rays, and
-  // of its lit hits, would bring it, by way of other cells too. Luminance.
+  // One draw of the noise of each cell, including noise by way of other cells. It is half the
+  // difference of what the two halves of its rays, and of its lit hits, would bring. Luminance.
   std::vector<float> half_difference;
   int iterations = 0;
 };

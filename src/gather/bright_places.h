@@ -1,8 +1,8 @@
-// Lit regions: spheres around cells that are much brighter than the mean, such as a patch of sun on
-// a floor or a lit room behind a door that is ajar. Few cosine-distributed gather rays meet such a
-// region, and those few bring most of the light. So a part of the rays is guided to lit regions,
-// and every ray is weighted by the density of both kinds together. The mean does not depend on the
-// guiding, and no ray counts more than `1 / least_by_cosine` times.
+// Lit regions: spheres around cells that are much brighter than the mean. Examples are a patch of
+// sun on a floor, or a lit room behind a door that is ajar. Few cosine-distributed gather rays meet
+// such a region, and those few bring most of the light. So a part of the rays is guided to lit
+// regions, and every ray is weighted by the density of both kinds together. The mean does not
+// depend on the guiding, and no ray counts more than `1 / least_by_cosine` times.
 //
 // The noise is least if the density of rays is proportional to the root mean square of what they
 // bring [1]. Used for records, viewing rays and sensors alike.

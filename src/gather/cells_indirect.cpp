@@ -20,10 +20,10 @@ constexpr uint32_t first_samples = 4;
 constexpr uint64_t reduced_numbers = 0x7468'7266;
 
 // Returns the number of gather rays of a hit, a power of two. The first samples of a pixel share
-// what it wants equally. Sample s of further ones gets wanted / (2 s + 1): the sum of 1 / rays is
-// then n² / wanted for every final number n, so that the mean over samples has the noise of
-// `wanted` rays. A hit costs as much as many rays, so the number has a lower limit, unless the
-// pixel asks for an effort divisor above 1.
+// what it wants equally. Sample s of further ones gets wanted / (2 s + 1). The sum of 1 / rays is
+// then n² / wanted for every final number n, so the mean over samples has the noise of `wanted`
+// rays. A hit costs as much as many rays, so the number has a lower limit, unless the pixel asks
+// for an effort divisor above 1.
 uint32_t rays_of_hit(float wanted, uint32_t sample, uint32_t effort_divisor) {
   const auto as_wanted = [&](float hits, uint32_t most) {
     uint32_t n = least_rays;

@@ -22,8 +22,8 @@ constexpr float least_pixels = 1.5f;
 constexpr float reach_of_error = 2, most_reach = 0.2f;
 // Inverse of the lobe width from which on gloss changes no faster than irradiance.
 constexpr float full_width = 2;
-// Too few neighbours for a plane give their mean, which holds only near their centroid: no farther
-// from it than this times the harmonic mean distance and the asked error.
+// Too few neighbours for a plane give their mean, which holds only near their centroid: within this
+// share of the harmonic mean distance, times the asked error.
 constexpr double most_offset = 0.5;
 // Limits of neighbours that a fit reads on either side. Within its radius it skips pixels to keep
 // them.
@@ -180,7 +180,7 @@ float GatherPass::allowed_error(const GatherRecord& r, Part part, float around) 
 
 // Returns the number of further rays of a record, decided by what the other half of the pixels has
 // met. If its own rays took part, records that happened to miss a small bright thing would get no
-// more rays, and only those that met it would be corrected. The picture would become too dark.
+// more rays. Only those that met it would be corrected. The picture would become too dark.
 uint32_t GatherPass::further_rays(int x, int y, uint32_t r, Part part) const {
   const GatherRecord& at = out_.records_[r];
   Surroundings s = around(x, y, r, part, Asked::other_half);

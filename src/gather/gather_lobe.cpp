@@ -15,8 +15,8 @@ namespace {
 constexpr float least_by_lobe = 0.03f;
 
 // Returns the share a of lobe rays that minimises the variance of both parts together under even
-// surroundings. It is matte² / (1 - a) for the matte part and about gloss² / ((1 - a) / m + a) for
-// gloss, over the number of rays, with m the second moment of cosine-distributed rays.
+// surroundings. With n rays, the matte part's variance is matte² / (1 - a) / n. That of gloss is
+// about gloss² / ((1 - a) / m + a) / n, with m the second moment of cosine-distributed rays.
 float best_share(float matte, float gloss, float m) {
   if (!(m > 1) || !(gloss > 0)) return 0;
   if (!(matte > 0)) return GatherLobe::most_by_lobe;

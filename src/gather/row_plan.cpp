@@ -81,9 +81,9 @@ std::vector<uint32_t> RowPlan::cells_to_resolve(int bounces) {
   return cells;
 }
 
-// Decided by the cell's importance. Where few rays share cells (in the open, between small things),
-// 16 rays from each cell and from all that they hit would be an endless tree; one ray each is a
-// path.
+// Decided by the cell's importance. Few rays share cells in the open and between small things.
+// There, 16 rays from each cell and from all that they hit would be an endless tree; one ray each
+// is a path.
 uint32_t RowPlan::first_rays(uint32_t cell) const {
   if (cell >= importance_.size()) return 1;
   const double worth = double(importance_[cell]) / of_ray_;
