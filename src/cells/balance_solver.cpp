@@ -10,11 +10,10 @@ namespace troffer {
 
 namespace {
 
-// Directions that the next one is made orthogonal to.
+// Previous directions that a new one is made orthogonal to.
 constexpr size_t kept_directions = 8;
 constexpr size_t cells_at_a_time = 8192;
-// Where so many steps do not leave less than this share of what did not balance before, as many
-// bounces are taken one after the other instead.
+// If this many steps leave more than this share of the residual, as many plain bounces follow.
 constexpr int steps_of_look = 16;
 constexpr double least_progress = 0.5;
 
@@ -52,8 +51,8 @@ class Solver {
   }
 
  private:
-  // What does not balance goes on once more: slow, but whatever W is like, as long as every row of
-  // it sums to less than one, its largest entry never grows.
+  // Takes one plain bounce. It is slow, but the largest entry of the residual never grows as long
+  // as every row of W sums to less than one.
   void bounce() {
     Field next;
     w_(residual_, next);
@@ -102,7 +101,7 @@ class Solver {
     return q;
   }
 
-  // By the entries' weights. Sums in the same order whatever the number of threads.
+  // Inner product by the entries' weights. The order of summation does not depend on threads.
   Channels dot(const Field& a, const Field& b) {
     chunks([&](size_t chunk, size_t first, size_t end) {
       Channels sum{};

@@ -1,4 +1,8 @@
-// Solving the balance of light in a room, E = D + W E.
+// Solves the balance of light in a room, E = D + W E. E and D are irradiance of cells, in any unit;
+// W carries light from cell to cell. Used by cell_rows.cpp.
+//
+// References: [1] Eisenstat, Elman & Schultz, "Variational Iterative Methods for Nonsymmetric
+// Systems of Linear Equations", SIAM J. Numer. Anal. 20(2), 1983 (ORTHOMIN).
 #pragma once
 
 #include <functional>
@@ -8,27 +12,29 @@
 
 namespace troffer {
 
-// out = W v, of the same length; may be called some hundred times.
+// Sets out = W v, of the same length. A solve may call it some hundred times.
 using LightOperator = std::function<void(const std::vector<Rgb>& v, std::vector<Rgb>& out)>;
 
 struct Balance {
   std::vector<Rgb> light;  // E
-  int iterations = 0;      // how often W was applied
+  int iterations = 0;      // applications of W
 };
 
-// Solves E = D + W E, every channel by itself, until what does not balance, summed over all entries
-// by their weights, is at most `most_left` of the same sum of E, or after `most_iterations`.
-// `weights`, as many as D: if they are the importance y = c + Wᵀ y of what c asks for, then c E is
-// off by y times what does not balance. W need not be symmetric. Generalised conjugate residuals
-// [1] in the inner product by weights: the weighted sum of squares of what does not balance never
-// grows, and where reflectances are near one, so that bounce after bounce would take hundreds, a
-// few dozen do. They cannot get stuck where I - W is positive real in that product. It is: no row
-// of W sums to more than r < 1, so max |W v| <= r max |v|; and Wᵀ y <= y, so Σ y |W v| <= Σ y |v|;
-// between the two norms Σ y (W v)² <= r Σ y v² (Riesz and Thorin). (Without weights it need not be:
-// many cells may see one.) That is for one channel's W; y is by luminance, so should they get stuck
-// after all, some bounces are taken one by one. [1] Eisenstat, Elman & Schultz, "Variational
-// Iterative Methods for Nonsymmetric Systems of Linear Equations", SIAM J. Numer. Anal. 20(2), 1983
-// (ORTHOMIN).
+// Solves E = D + W E, each channel by itself. Ends when the residual is at most `most_left` of E,
+// both summed over all entries by their weights, or after `most_iterations`. W need not be
+// symmetric.
+// weights: as many as D. If they are the importance y = c + Wᵀ y of what c asks for, c E errs by y
+// times the residual.
+//
+// The method is generalised conjugate residuals [1] in the inner product by weights. The weighted
+// sum of squares of the residual never grows. Where reflectances are near one, a few dozen steps do
+// what would take hundreds of bounces.
+//
+// It converges where I - W is positive real in that product, which holds for importance. No row of
+// W sums to more than r < 1, so max |W v| <= r max |v|. And Wᵀ y <= y, so Σ y |W v| <= Σ y |v|.
+// Between the two norms Σ y (W v)² <= r Σ y v² (Riesz and Thorin). Without weights it need not
+// hold, because many cells may see one. The proof is for one channel's W, but y is by luminance. If
+// steps stall after all, some plain bounces follow.
 Balance solve_balance(const LightOperator& w, const std::vector<Rgb>& d,
                       const std::vector<float>& weights, double most_left, int most_iterations,
                       int threads);

@@ -1,4 +1,5 @@
-// A place on a surface, seen from one side, where light from all around is asked for.
+// A place on one side of a surface where light from all around is asked for. Shared by cells,
+// gather rays, records and sensors.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +10,11 @@ namespace troffer {
 
 struct CellHit {
   Vec3 position;
-  Vec3 normal;       // unit, that of the cosine: shading normal on the viewer's side
+  Vec3 normal;       // unit, of the cosine: shading normal on the viewer's side
   Vec3 horizon;      // unit, geometric normal on the viewer's side
   float offset = 0;  // metres off the surface at which rays start
-  // A coat over what is matte there: 2 × material, and 1 on the inside; and texture coordinates.
+  // Coat over the matte layer: 2 × material, plus 1 on the inside. `uv` are its texture
+  // coordinates.
   uint32_t coated = uncoated;
   Vec2 uv{};
 

@@ -11,30 +11,32 @@ namespace troffer {
 
 namespace {
 
-// Hits of one cell lie in one plane within this share of its size; more where it is curved.
+// Hits of one cell lie in one plane within this share of its size, or farther off where it is
+// curved.
 constexpr float flatness = 0.05f;
-// Cosine of the angle by which normals in a cell may differ.
+// Least cosine between normals in a cell.
 constexpr float least_cosine = 0.87f;
-// How high above the surface sight is tried, in sizes.
+// Height above the surface of visibility tests, in cell sizes.
 constexpr float lift = 0.1f;
-// How wide the surface of a narrow cell is at the most, and within what that is found out, in
+// Largest width of the surface of a narrow cell, and the precision to which it is found, in cell
 // sizes.
 constexpr float most_of_narrow = 1.2f, known_width = 0.05f;
-// Cells of one voxel; what is compatible with none of so many joins the least incompatible, or the
-// leaves of a tree would be a list each voxel.
+// Cells of one voxel. A hit that is compatible with none of so many joins the least incompatible
+// one. Otherwise the leaves of a tree would make a long list in each voxel.
 constexpr int most_in_voxel = 12;
-// How often a cell is halved.
+// Number of times that a cell may be halved.
 constexpr int32_t most_halvings = 6;
 
-// The axis along which a normal points most, and which way. Weights keep surfaces at 45° from being
-// torn by rounding.
+// Returns the axis along which a normal points most, and its sign. The factors keep rounding from
+// tearing surfaces at 45°.
 uint32_t face_of(const Vec3& n) {
   const float x = std::abs(n.x), y = std::abs(n.y) * 1.017f, z = std::abs(n.z) * 1.031f;
   const uint32_t axis = x > y && x > z ? 0 : y > z ? 1 : 2;
   return 2 * axis + (n[axis] < 0 ? 1u : 0u);
 }
 
-// The voxel's number along one axis. The grid is off the planes at which people build.
+// Returns the voxel's number along one axis. The shift keeps the grid off the round coordinates at
+// which people build.
 constexpr double shift = 0.3819660;
 int64_t voxel_of(float x, float size) {
   return int64_t(std::floor(double(x) / double(size) + shift));
@@ -44,10 +46,10 @@ uint64_t key_of(const CellHit& h, float size, int32_t level) {
   const uint64_t key = hash_of(
       uint64_t(voxel_of(h.position.x, size)), uint64_t(voxel_of(h.position.y, size)),
       uint64_t(voxel_of(h.position.z, size)), face_of(h.normal) + 8 * uint64_t(int64_t(level)));
-  return key == 0 ? 1 : key;  // 0: an empty slot
+  return key == 0 ? 1 : key;  // 0 marks an empty slot
 }
 
-// Of the voxel of a hit whose normal is not far from the axis along which it points most.
+// Returns the outline of the voxel of a hit. Its normal must not be far from its main axis.
 CellOutline outline_of(const CellHit& hit, float size) {
   const Vec3& n = hit.horizon;
   const size_t up = face_of(hit.normal) / 2, u = (up + 1) % 3, v = (up + 2) % 3;
@@ -96,7 +98,7 @@ bool CellMap::sees(const Anchor& a, const CellHit& hit) const {
                                       hit.position + hit.horizon * (lift * a.size)));
 }
 
-// Through the cells of one voxel, the first of which is given.
+// Searches the cells of one voxel, from its first one.
 CellMap::Found CellMap::search(uint32_t first, const CellHit& hit) const {
   Found found;
   uint32_t best = no_cell;
@@ -183,7 +185,7 @@ uint32_t CellMap::add(const CellHit& hit, float distance, bool is_asked) {
   return cell;
 }
 
-// The cell of one level there, or what was halved.
+// Returns the cell of one level there, or the halved one; makes one if there is none.
 uint32_t CellMap::add_at(const CellHit& hit, int32_t level, bool is_asked) {
   const uint64_t key = key_of(hit, size_at(level), level);
   Slot& slot = slots_[slot_of(key)];
@@ -206,7 +208,7 @@ uint32_t CellMap::make(const CellHit& hit, int32_t level, bool is_asked) {
   a.normal = hit.horizon;
   a.size = size_at(level);
   const size_t up = face_of(hit.normal) / 2;
-  // Where shading turns it too far from its plane there is no outline to look at.
+  // If shading turns the normal too far from the surface's plane, there is no outline to test.
   a.is_divided = std::abs(hit.horizon[up]) < 0.2f;
   if (!a.is_divided) {
     const CellOutline outline = outline_of(hit, a.size);
@@ -219,29 +221,28 @@ uint32_t CellMap::make(const CellHit& hit, int32_t level, bool is_asked) {
   return uint32_t(anchors_.size() - 1);
 }
 
-// Whatever parts the surface within the voxel also crosses the outline of the voxel on the
-// surface's plane: four short rays above it.
+// True if something parts the surface within the voxel. It then crosses the outline of the voxel on
+// the surface's plane, which four short rays test just above it.
 bool CellMap::is_divided(const CellHit& hit, const CellOutline& outline, float size) const {
   const Vec3 up = outline.normal * (lift * size);
   const auto corner = [&](size_t i) { return outline.corners[i % 4] + up; };
   for (size_t i = 0; i < 4; ++i)
     if (is_blocked(tracer_, segment(corner(i), corner(i + 1)))) return true;
-  // … and stands between the outline and the hit, if it is small
+  // A small thing stands between the outline and the hit.
   return is_blocked(tracer_, segment(hit.position + up, corner(0))) ||
          is_blocked(tracer_, segment(hit.position + up, corner(2)));
 }
 
-// Whether along one of the voxel's axes a surface is not much wider than a cell: it ends, or bends
-// away, before and behind. By its width, not by where on it that place is: a cell's light is that
-// of few hits, and cells made at the darker edge would be another kind than those made at the
-// brighter one.
+// True if the surface is not much wider than a cell along one of the voxel's axes, because it ends
+// or bends away at both sides. The place on it does not matter. A cell's light is that of few hits,
+// so cells at the darker edge must not be marked differently from those at the brighter one.
 bool CellMap::ends_both_ways(const Vec3& position, const Vec3& normal, float size) const {
   const size_t up = face_of(normal) / 2;
   const Vec3 above = normal * (lift * size);
   const auto is_there = [&](const Vec3& d) {
     return is_blocked(tracer_, segment(position + d + above, position + d - above));
   };
-  // How far it goes, in sizes, where that is less than `most`; by halves of what is not known.
+  // Returns how far the surface goes, in cell sizes, but no more than `most`. Bisects.
   const auto extent = [&](const Vec3& to, float most) {
     if (is_there(to * most)) return most;
     float is = 0, ends = most;
@@ -252,7 +253,7 @@ bool CellMap::ends_both_ways(const Vec3& position, const Vec3& normal, float siz
     return 0.5f * (is + ends);
   };
   for (const size_t along : {(up + 1) % 3, (up + 2) % 3}) {
-    Vec3 d;  // on the surface's plane
+    Vec3 d;  // along the surface's plane
     d[along] = size;
     d[up] = -d[along] * normal[along] / normal[up];
     const float before = extent(d, most_of_narrow), most = most_of_narrow - before;

@@ -1,17 +1,18 @@
-// Cells: small parts of surfaces, made where rays hit, that share one value of irradiance.
+// Cache cells: small parts of surfaces, made where rays hit, that share one value of irradiance.
+// Rows, direct light and gather rays refer to cells by their numbers. Lengths are in metres.
 //
-// A hit belongs to the cell of its voxel (of the scene's cell size, half of it where the ray came
-// from near, or twice as large and more where it came from far away), of the side of space that its
-// normal points to, and, among several of the same voxel, to the first that it is compatible with:
-// in one plane with it or on one curved surface, and, where something stands in the voxel, seen
-// from it. So neither the two sides of a thin wall share a cell, nor the boards of a shelf, nor two
-// rooms that stand on one floor.
+// A hit belongs to a cell of its voxel and of the axis direction to which its normal points most.
+// Voxels have the scene's cell size, half of it where the ray came from nearby, twice or more where
+// it came from far away. Among several cells of a voxel it takes the first compatible one. That is
+// in one plane with it or on one curved surface, and visible from it if something stands in the
+// voxel. So neither the two sides of a thin wall share a cell, nor the boards of a shelf, nor two
+// rooms on one floor.
 //
-// Where light straight from sources nearby differs much within a voxel (a lamp close to a wall),
-// there are cells of half its size in place of one, and of half that, and so on.
+// Where direct light from nearby sources differs much within a voxel (a lamp close to a wall),
+// cells of half the size replace one, and so on.
 //
-// Cells are made one after the other in the order of add(), and never change: the same cells for
-// any number of threads. A copy can be added to without a change to those it was copied from.
+// Cells are made in the order of add() and never change, so they are the same for any number of
+// threads. Adding to a copy does not change the original.
 #pragma once
 
 #include <array>
@@ -27,16 +28,16 @@
 namespace troffer {
 
 constexpr uint32_t no_cell = 0xffffffffu;
-// No map has smaller ones: within reach of float positions their voxels have numbers.
+// Least cell size of any map, metres. It keeps the numbers of voxels within range.
 constexpr float least_cell = 1e-6f;
-// Hits of a cell that are kept: those from which its rays start and at which it is lit.
+// Hits that a cell keeps: its rays start there, and direct light is computed there.
 constexpr size_t hits_per_cell = 8;
-// … of one to which a picture's own rays come (CellMap::add, is_asked). Light changes much within a
-// cell at the edge of a shadow, and some pictures get theirs from few cells.
+// Hits that a cell keeps which a picture's own rays meet (CellMap::add, is_asked). Light changes
+// much within a cell at the edge of a shadow, and some pictures get most light from few cells.
 constexpr size_t hits_of_asked_cell = 32;
 
-// A voxel's outline on the plane of a surface in it, the surface's normal, and how far above it
-// rays set out.
+// Outline of a voxel on the plane of a surface in it, the surface's normal, and the height in
+// metres at which rays start.
 struct CellOutline {
   std::array<Vec3, 4> corners;
   Vec3 normal;
@@ -45,39 +46,41 @@ struct CellOutline {
 
 class CellMap {
  public:
-  // Whether one value of irradiance is too little for a piece of surface; is_asked: that the
-  // picture looks at.
+  // True if one value of irradiance is too little for a piece of surface. is_asked: the picture
+  // looks at it.
   using IsUneven = std::function<bool(const CellOutline&, bool is_asked)>;
 
-  // size: of voxels, metres. The tracer must outlive it.
+  // size: of voxels, metres. The tracer must outlive the map.
   CellMap(const Tracer& tracer, float size);
 
   float size_of_cells() const { return size_; }
-  // Light from nearer than this comes from half cells.
+  // Distance in metres below which rays read cells of half the size.
   float near() const { return 3 * size_; }
   size_t size() const { return anchors_.size(); }
   size_t bytes() const;
 
-  // The cell of what a ray of this length has hit, or no_cell. Any number of threads may call it
-  // while nothing is added.
+  // Returns the cell that a ray of this length has hit, or no_cell. Any number of threads may call
+  // it while nothing is added.
   uint32_t find(const CellHit& hit, float distance) const;
-  // The finest one there of those seen from no nearer than near(), or no_cell.
+  // Returns the finest cell there of those for rays no shorter than near(), or no_cell.
   uint32_t find_from_afar(const CellHit& hit) const;
-  // Asks for the memory that find() will read, in two steps, so that it is there when many others
-  // have been asked for meanwhile: of which voxel, and of what is in that. The voxel's key is for
-  // find(), too, of the same hit and distance.
+  // Prefetch what find() will read, in two steps: the voxel, and then its first cell. Do each step
+  // for many hits, so that the memory has arrived by the next. The key that expect_voxel() returns
+  // is also for find(), with the same hit and distance.
   uint64_t expect_voxel(const CellHit& hit, float distance) const;
   void expect_cell(uint64_t voxel) const;
   uint32_t find(const CellHit& hit, float distance, uint64_t voxel) const;
-  // As find(), made if there is none. is_asked: by one of the rays that the picture will send.
+  // Returns the cell as find() does, or makes one. is_asked: the ray is one that the picture will
+  // send.
   uint32_t add(const CellHit& hit, float distance, bool is_asked = false);
-  // Of cells that are made from here on; any number of halvings, up to a limit.
+  // Sets the test by which cells made from here on are halved. Halves are tested again, up to a
+  // limit.
   void halve_where(IsUneven is_uneven) { is_uneven_ = std::move(is_uneven); }
-  // From here on the cells that there are keep the hits that they have.
+  // Stops the existing cells from taking further hits.
   void freeze() { frozen_ = anchors_.size(); }
   size_t frozen() const { return frozen_; }
 
-  // Of one cell; empty after forget_hits(), and where there are smaller ones in its place.
+  // Hits of one cell. Empty after forget_hits(), and for cells that smaller ones replace.
   std::span<const CellHit> hits(size_t cell) const {
     if (hits_.empty()) return {};
     const Hits& h = hits_[cell];
@@ -85,12 +88,12 @@ class CellMap {
                              : std::span<const CellHit>(more_hits_[h.more]);
   }
   const Vec3& position(size_t cell) const { return anchors_[cell].position; }
-  // Whether it is known from here on which cells are narrow: of a thing about as narrow as the cell
-  // (a slat, a bar, a lip), or bent as much (a thin pillar). Light differs from one side of it to
-  // the other, and from here the one is seen, from there the other.
+  // Switches the marking of narrow cells on or off, for existing and further cells. A cell is
+  // narrow on a sub-cell feature, such as a slat, a bar or a lip about as narrow as the cell, or a
+  // thin pillar. Light differs between its sides, which are seen from different places.
   void look_closely(bool looks, int threads);
   bool is_narrow(size_t cell) const { return anchors_[cell].is_narrow; }
-  // Whether a cell that were made of what a ray of this length has hit would be narrow.
+  // True if a cell made for the hit of a ray of this length would be narrow.
   bool would_be_narrow(const CellHit& hit, float distance) const;
   void forget_hits() {
     hits_ = {};
@@ -98,32 +101,32 @@ class CellMap {
   }
 
  private:
-  // Rays that are so many sizes long see cells that are twice as wide, of twice as many four times.
-  // Of interiors in which most rays go from wall to wall they are those of some 4 times the usual
-  // length, or more where a coarse picture has larger cells.
+  // Rays of this many cell sizes read cells twice as wide, those of twice as many cells four times
+  // as wide, and so on. Cells are .06 of the median ray length for fine errors, so these rays are
+  // about 4 times as long as the median, or more in coarse pictures.
   static constexpr float sizes_of_far = 64;
   static constexpr int32_t most_doublings = 12;
 
-  friend struct CellMapParts;  // cell_store.cpp: to and from bytes
+  friend struct CellMapParts;  // cell_store.cpp: reads and writes the members
 
   struct Anchor {
     Vec3 position, normal;
-    uint32_t next = no_cell;  // of the same voxel
+    uint32_t next = no_cell;  // next cell of the same voxel
     float size = 0;
-    bool is_divided = false;  // something stands in the voxel: sight decides
-    bool is_halved = false;   // no cell: smaller ones are in its place
-    bool is_narrow = false;   // so far as that is looked at
+    bool is_divided = false;  // something stands in the voxel: hits must see the cell
+    bool is_halved = false;   // smaller cells replace it
+    bool is_narrow = false;   // as far as look_closely() is on
   };
   struct Hits {
     std::array<CellHit, hits_per_cell> hits;
     uint32_t count = 0;
-    uint32_t more = no_cell;  // where all of them are, if they are more
+    uint32_t more = no_cell;  // index in more_hits_ of all hits, if they do not fit here
   };
   struct Slot {
     uint64_t key = 0;
     uint32_t first = no_cell;
   };
-  // Where a search ended.
+  // End of a search: the cell, and the last one of the voxel.
   struct Found {
     uint32_t cell = no_cell, last = no_cell;
   };
@@ -134,9 +137,9 @@ class CellMap {
   bool sees(const Anchor& a, const CellHit& hit) const;
   bool is_divided(const CellHit& hit, const CellOutline& outline, float size) const;
   bool ends_both_ways(const Vec3& position, const Vec3& normal, float size) const;
-  // Voxels of level k are 2^-k times as wide. Light from near by is that of half cells. Where most
-  // of what is asked for is in a gap of a few centimetres, cells are some millimetres wide, but a
-  // room around it is not to be millions of them.
+  // Level of the voxels that rays of this length read. Voxels of level k are 2^-k times the cell
+  // size wide. Without coarse levels, a picture of a gap of a few centimetres would fill the room
+  // around it with millions of cells some millimetres wide.
   int32_t first_level(float distance) const {
     if (distance < near()) return 1;
     int32_t level = 0;
@@ -155,10 +158,10 @@ class CellMap {
   std::vector<Anchor> anchors_;
   std::vector<Hits> hits_;
   std::vector<std::vector<CellHit>> more_hits_;
-  std::vector<Slot> slots_;  // open addressing; a power of two of them
+  std::vector<Slot> slots_;  // open addressing; their number is a power of two
   bool looks_closely_ = false;
   size_t used_ = 0;
-  size_t frozen_ = 0;  // cells from 0 that get no more hits
+  size_t frozen_ = 0;  // cells below this number get no more hits
   IsUneven is_uneven_;
 };
 

@@ -15,11 +15,12 @@ namespace {
 constexpr size_t rows_at_a_time = 1024;
 constexpr int most_iterations = 400;
 constexpr int bounces_of_noise = 6;
-// Of light, what a cell can get of the others' at the most, by few rays and by more.
+// Largest factor by which a row may pass on light: for few rays, and for more.
 constexpr float most_by_few = 0.99f, most_by_more = 1.2f;
 constexpr uint32_t few_rays = 8;
-constexpr double most_unbalanced = 2e-6;  // of the light, both by what is asked
-// More than any rows pass on that light made: those of a file may amplify it to infinity.
+constexpr double most_unbalanced = 2e-6;  // residual over light, both by importance
+// Limit of importance, which rows made by rays do not reach. Those of a file may amplify it to
+// infinity.
 constexpr float most_importance = 1e30f;
 
 template <typename F>
@@ -56,9 +57,9 @@ void CellRows::finish(size_t cells) {
 }
 
 // Rows that amplify light by the chance of few rays would do so again and again where cells see
-// themselves or each other alone: there would be no balance, or one that is far too bright. By more
-// rays they do so less, and next to others that do not: all of them bounded, a white kitchen lacked
-// .4 % of its reflected light.
+// only themselves or each other. There would be no balance, or one that is far too bright. Rows of
+// more rays amplify less, and others nearby make up for it. Measured: with the strict bound for all
+// rows, a white kitchen lacks .4 % of its reflected light.
 float CellRows::bounded_share(size_t cell) const {
   if (rays_[cell] == 0) return 1;
   Rgb sum;
@@ -80,7 +81,7 @@ CellRows::RowSum CellRows::sum_of(size_t cell, const std::vector<Rgb>& e, Half h
   return sum;
 }
 
-// Of each cell, D and the sources that its rays ran into.
+// Returns, per cell, D and the light of sources that its rays ran into.
 std::vector<Rgb> CellRows::light_of_sources(const std::vector<Rgb>& direct, int threads) const {
   std::vector<Rgb> out = direct;
   by_cells(direct.size(), threads, [&](size_t i) {
@@ -106,9 +107,9 @@ CellRows::Packed CellRows::packed() const {
   return rows;
 }
 
-// Half the difference of what either half of a cell's rays brings, as one draw of what their mean
-// is off by. A single ray does not tell how far others would be from it: taken to be half of what
-// it brings, up or down, for all of one sign would add up.
+// Half the difference of what the two halves of a cell's rays bring: one draw of the error of their
+// mean. A single ray does not tell how far others would be from it. Its error is taken to be half
+// of what it brings, with a random sign, because equal signs would add up.
 float CellRows::difference_of_halves(size_t cell, const std::vector<Rgb>& e) const {
   float mean[2];
   int halves = 0;
@@ -127,7 +128,7 @@ std::vector<float> CellRows::differences(const std::vector<Rgb>& e, int threads)
   return own;
 }
 
-// All draws at a time: that of one takes as long, by the time that its cells take to be found.
+// All draws go together, because finding the cells of a row in memory takes longer than adding.
 std::vector<NoiseDraws> CellRows::noise_draws(const std::vector<float>& by_rows,
                                               const std::vector<float>& by_hits,
                                               int threads) const {
@@ -153,7 +154,7 @@ std::vector<NoiseDraws> CellRows::noise_draws(const std::vector<float>& by_rows,
   return draws;
 }
 
-// What is off in one cell is off in those that see it: d = s + W d, to the first few bounces.
+// Propagates errors to cells that see a cell: d = s + W d, over the first few bounces.
 void CellRows::spread(const Packed& rows, std::vector<float>& differences, int threads) {
   const std::vector<float> source = differences;
   std::vector<float> next(source.size());
@@ -195,7 +196,7 @@ CellLight CellRows::solve(const std::vector<Rgb>& direct, const std::vector<floa
 
 std::vector<float> CellRows::importance(const std::vector<float>& asked, std::vector<float> known,
                                         int iterations) const {
-  // y + w, where w is what is left: w = c + Wᵀ y - y, and then Wᵀ w, again and again
+  // `wave` is the residual of y: c + Wᵀ y - y at first, then Wᵀ wave, bounce after bounce.
   std::vector<float> y = asked, wave = asked, next(asked.size());
   const auto pass_on = [&] {
     std::fill(next.begin(), next.end(), 0.0f);

@@ -20,7 +20,7 @@ struct Header {
   uint64_t scene_key;
   double direct_error;
   uint64_t cells, hits, slots, parts, entries;
-  uint64_t hash;  // of all else: header with 0 here, and body
+  uint64_t hash;  // of the body, and of the header with 0 here
 };
 static_assert(sizeof(Header) == 80);
 
@@ -54,7 +54,8 @@ bool is_unit(const Vec3& v) {
 
 }  // namespace
 
-// What the map is made of; checked, for the file may be anybody's.
+// Reads and writes what a map is made of. Reading checks everything, because a file may come from
+// anybody.
 struct CellMapParts {
   static uint64_t hits_of(const CellMap& map) {
     uint64_t n = 0;
@@ -76,14 +77,14 @@ struct CellMapParts {
     std::vector<FileSlot> slots;
     for (const CellMap::Slot& slot : map.slots_)
       if (slot.key != 0) slots.push_back({slot.key, slot.first, 0});
-    // Where they stand in a table depends on the order in which it was filled.
+    // Sorted, because the order of slots depends on the order in which the table was filled.
     std::sort(slots.begin(), slots.end(),
               [](const FileSlot& a, const FileSlot& b) { return a.key < b.key; });
     for (const FileSlot& slot : slots) append(out, slot);
   }
 
-  // False where something is not as a map can be. Cells of a voxel come in the order in which they
-  // were made, so their lists end.
+  // Reads a cell; false if no map can have it. Cells of a voxel are linked in the order in which
+  // they were made, so their lists end.
   static bool read_cell(const FileCell& f, size_t cell, size_t cells, CellMap& map) {
     if (!is_finite(f.position) || !is_unit(f.normal) || !(f.size > 0) || !std::isfinite(f.size) ||
         f.flags > (divided_flag | halved_flag) || f.hits > hits_per_cell)
@@ -183,7 +184,7 @@ bool read_cells(ByteReader& in, const Header& h, CellMap& map, CellStore& store)
 }
 
 bool read_rows(ByteReader& in, const Header& h, const CellMap& map, CellRows& rows) {
-  // What was halved is none, and has no hits for rays to set out from.
+  // A halved cell is no cell, and has no hits at which rays could start.
   const auto is_cell = [&](uint32_t c) { return c < h.cells && !map.hits(c).empty(); };
   std::vector<RowPart> parts;
   uint64_t entries = 0;

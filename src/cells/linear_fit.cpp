@@ -7,7 +7,7 @@ namespace troffer {
 
 namespace {
 
-// Pulls slopes that the neighbours hardly tell towards zero.
+// Regularisation: pulls slopes that the neighbours hardly determine towards zero.
 constexpr double ridge = 1e-3;
 
 Rgb as_rgb(const Vec3d& v) {
@@ -42,7 +42,7 @@ bool LinearFit::solve(FittedLight& out) const {
   const bool is_plane = this->is_plane();
   const double more = is_plane ? ridge * m.one : 1e12 * m.one;
   const double uu = m.uu + more, vv = m.vv + more;
-  // first row of the inverse of the normal equations' matrix: the value at the origin
+  // First row of the inverse of the normal equations' matrix: gives the value at the origin.
   const double c0 = uu * vv - m.uv * m.uv, c1 = m.uv * m.v - m.u * vv, c2 = m.u * m.uv - uu * m.v;
   const double determinant = m.one * c0 + m.u * c1 + m.v * c2;
   if (!(determinant > 0)) return false;
@@ -53,7 +53,7 @@ bool LinearFit::solve(FittedLight& out) const {
   const double variance = a * a * s.one + 2 * a * b * s.u + 2 * a * c * s.v + b * b * s.uu +
                           2 * b * c * s.uv + c * c * s.vv;
   out.neighbours = variance > 0 ? 1 / variance : 1;
-  // Σ w (E - fit)², with slopes by the other rows
+  // Σ w (E - fit)², with slopes by the other rows.
   const double y0 = luminance_of(sum_), yu = luminance_of(sum_u_), yv = luminance_of(sum_v_);
   const double d = (m.one * vv - m.v * m.v) / determinant,
                e = (m.u * m.v - m.one * m.uv) / determinant,
@@ -61,7 +61,8 @@ bool LinearFit::solve(FittedLight& out) const {
   const double slope_u = b * y0 + d * yu + e * yv, slope_v = c * y0 + e * yu + f * yv;
   const double residual = luminance_squared_ - luminance_of(value) * y0 - slope_u * yu -
                           slope_v * yv - more * (slope_u * slope_u + slope_v * slope_v);
-  // … is the variance times Σ kernel, less what the fit takes of it (the trace of its hat matrix)
+  // The residual is the variance times Σ kernel, less what the fit takes of it: the trace of its
+  // hat matrix.
   const double taken = a * s.one + 2 * b * s.u + 2 * c * s.v + d * s.uu + 2 * e * s.uv + f * s.vv;
   const double left = kernels_ - taken;
   out.spread = left > 1e-3 * kernels_ ? std::max(residual, 0.0) / left : 0;

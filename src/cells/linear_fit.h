@@ -1,5 +1,5 @@
-// A linear fit of irradiance over neighbours in a plane, by weighted least squares, taken at the
-// plane's origin.
+// Linear fit of irradiance over neighbours in a plane by weighted least squares, evaluated at the
+// plane's origin. Used by gather/gather_pass.h for records of a picture.
 #pragma once
 
 #include "base/rgb.h"
@@ -9,26 +9,27 @@ namespace troffer {
 
 struct FittedLight {
   Rgb value;
-  // The variance of `value` is that of one neighbour (of weight 1) over this.
+  // Number of neighbours of weight 1 whose mean has the variance of `value`.
   double neighbours = 0;
   double spread = 0;  // variance of luminance of a neighbour of weight 1 about the fit
 };
 
-// Sums over neighbours.
+// Sums over neighbours. Add them all, then solve.
 class LinearFit {
  public:
-  // At (u, v), in units of the radius. kernel: how near it is; rays: the inverse of its variance.
+  // Adds a neighbour at (u, v), in radii. kernel: weight by nearness. rays: inverse of its
+  // variance.
   void add(float u, float v, float kernel, float rays, Rgb value);
   int count() const { return count_; }
-  // Whether they are enough for a plane; else their mean is all they tell …
+  // True if there are enough neighbours for a plane.
   bool is_plane() const { return count_ >= least_neighbours; }
-  // … of this far from the origin, in radii.
+  // Returns the distance of the weighted centroid from the origin, in radii.
   double offset() const;
-  // False where there are too few neighbours for a plane: then it is their mean.
+  // Sets `out`. False if there are too few neighbours for a plane: `out` is then their mean.
   bool solve(FittedLight& out) const;
 
  private:
-  // of weights w = kernel × rays: 1, u, v, u², uv, v²; and of w² / rays, likewise
+  // Moments by weights w = kernel × rays: of 1, u, v, u², uv, v². Those by w² / rays are alike.
   struct Moments {
     double one = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0;
     void add(double w, double x, double y) {

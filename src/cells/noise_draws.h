@@ -1,4 +1,5 @@
-// What cells are off by, as draws: all of them of the same cells, each with signs of its own.
+// Draws of the error of light that comes from cells. All draws are of the same cells, each with
+// random signs of its own.
 #pragma once
 
 #include <array>
@@ -6,13 +7,13 @@
 
 namespace troffer {
 
-// So many draws tell what light that many cells bring varies by, as well as so many measurements
-// would; where one cell brings nearly all, they are one measurement, for what it is off by is known
-// by one difference of halves.
+// Number of draws. For light of many cells they give its variance as well as this many measurements
+// would. Where one cell brings nearly all, they are one measurement, because one difference of
+// halves is all that is known of its error.
 constexpr int draws_of_noise = 16;
 
-// Luminance of irradiance, or of sums of it: linear in light, so that draws of a sum are the sums
-// of its terms' draws.
+// Luminance of irradiance, or of sums of it. Linear in light: draws of a sum are the sums of its
+// terms' draws.
 using NoiseDraws = std::array<float, draws_of_noise>;
 
 inline void add_draws(NoiseDraws& to, float times, const NoiseDraws& what) {

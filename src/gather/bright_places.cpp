@@ -11,22 +11,25 @@ namespace troffer {
 
 namespace {
 
-constexpr double least_brightness = 2;  // of a bright cell, over the mean
-// Of the mean square, were as many rays as is best sent to bright cells: above this it is not worth
-// while.
+constexpr double least_brightness = 2;  // threshold of a bright cell, over the mean
+// Guiding pays only if the best possible share of rays towards bright cells would leave less than
+// this part of the mean square.
 constexpr double most_left = 0.6;
-constexpr float first_radius = 2;  // of a place, in cells
-// Cones are at least so wide (sine), and none is made from nearer than this many radii.
+constexpr float first_radius = 2;  // of a region, in cells; grows until most_places suffice
+// Least sine of a cone's half angle; least distance of a place from a region's centre, in radii.
 constexpr float least_sine = 0.02f, least_distance = 1.2f;
+// Share of its cone that a region of mixed normals is taken to fill; least length of the mean
+// normal of a region that counts as flat.
 constexpr float unknown_fill = 0.5f, least_flat = 0.8f;
+// Least visible share, since a few tests may miss what is seen; least share of rays for a cone.
 constexpr float least_visible = 0.02f, least_share = 0.003f;
-constexpr double most_amiss = 16;  // what is expected, and what is found
-constexpr size_t least_tries = 2;  // of sight of each place
+constexpr double most_amiss = 16;  // limit of found over expected light, either way
+constexpr size_t least_tries = 2;  // visibility tests of each region
 
 struct BrightCell {
   Vec3 position, normal;
-  double share = 0;       // of rays that meet it
-  double irradiance = 0;  // that one of them brings
+  double share = 0;       // of pilot rays that meet it
+  double irradiance = 0;  // mean irradiance that one of them brings
   const PilotHit* first = nullptr;
   uint32_t hits = 0;
 };
@@ -45,7 +48,7 @@ Sphere sphere_around(std::span<const BrightCell> cells, float margin) {
   return s;
 }
 
-// In two by their longest side's middle, until none is larger.
+// Splits cells at the middle of the longest side of their box until every part is small enough.
 void divide(std::span<BrightCell> cells, float margin, float most_radius,
             std::vector<std::span<BrightCell>>& out) {
   if (cells.size() < 2 || sphere_around(cells, margin).radius <= most_radius)
@@ -84,24 +87,24 @@ BrightHits hits_of(std::span<const BrightCell> cells) {
   const size_t step = std::max<size_t>(cells.size() / BrightHits::most, 1);
   for (size_t i = 0; i < cells.size() && h.count < BrightHits::most; i += step)
     h.hits[h.count++] = cells[i].first->hit;
-  // Of few cells more than one hit each.
+  // Takes further hits of each cell if there are few cells.
   for (uint32_t k = 1; k < BrightHits::most && h.count < BrightHits::most; ++k)
     for (const BrightCell& c : cells)
       if (k < c.hits && h.count < BrightHits::most) h.hits[h.count++] = c.first[k].hit;
   return h;
 }
 
-// What is known of rays towards a place that is seen from somewhere. Without first values: of room
-// for many, little is used.
+// One region as a place sees it. Without initial values, because most elements of the array are
+// never used.
 struct Towards {
   uint32_t place;
   float height;     // 1 - cosine of the cone's half angle
-  float by_cosine;  // share of rays drawn so
-  float expected;   // mean over those of the square of what they bring
-  float wanted;     // of rays, not over all of them
+  float by_cosine;  // share of cosine-distributed rays within the cone
+  float expected;   // mean over those rays of the squared irradiance from the region
+  float wanted;     // rays that the region deserves, not normalised
 };
 
-// All but the place's number; false where nothing can be seen of it, or one stands in it.
+// Sets all of t except for `place`; false if the region is invisible from there, or too near.
 bool look_towards(const BrightPlace& p, float visible, const CellHit& at, Towards& t) {
   const Vec3 d = p.centre - at.position;
   const bool is_flat = length_squared(p.normal) >= sqr(least_flat);
@@ -111,7 +114,7 @@ bool look_towards(const BrightPlace& p, float visible, const CellHit& at, Toward
   const Vec3 axis = d * (1 / distance);
   const float sine = std::max(p.radius / distance, least_sine), height = dot(axis, at.normal);
   if (height <= -sine) return false;
-  // Of its cosines, where the horizon cuts through it.
+  // Mean cosine over the cone, approximated where the horizon cuts through it.
   const float mean_cosine = height >= sine ? height : sqr(height + sine) / (4 * sine);
   const float fill = is_flat ? std::max(-dot(axis, p.normal), 0.0f) : unknown_fill;
   t.height = sqr(sine) / (1 + std::sqrt(1 - sqr(sine)));
@@ -256,8 +259,9 @@ Vec3 GatherAim::direction(const CellHit& at, Vec2 number, float& weight) const {
     size_t k = 0;
     while (k + 1 < cones_.size() && left >= cones_[k].share) left -= cones_[k++].share;
     const Cone& c = cones_[k];
-    const Vec2 d = disk_from_square(Vec2{std::clamp(left / c.share, 0.0f, one_minus_epsilon), number.y});
-    const float below = (sqr(d.x) + sqr(d.y)) * c.height;  // the axis, over 1
+    const Vec2 d =
+        disk_from_square(Vec2{std::clamp(left / c.share, 0.0f, one_minus_epsilon), number.y});
+    const float below = (sqr(d.x) + sqr(d.y)) * c.height;  // 1 - cosine to the cone's axis
     const float scale = std::sqrt(c.height * (2 - below));
     world = c.frame.to_world({d.x * scale, d.y * scale, 1 - below});
   }

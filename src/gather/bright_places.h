@@ -1,11 +1,14 @@
-// Where around a picture's places it is far brighter than elsewhere: what a lamp in a cove shines
-// on, a floor in the sun, a lit room behind a door that is ajar. Few of the rays that gather light
-// by its cosine meet such a place, and those few bring most of the light. So some are aimed at it,
-// and all count by the density of both kinds together: the sum has the same mean, whatever is aimed
-// at, and no ray counts more than `1 / least_by_cosine` times.
+// Lit regions: spheres around cells that are much brighter than the mean. Examples are a patch of
+// sun on a floor, or a lit room behind a door that is ajar. Few cosine-distributed gather rays meet
+// such a region, and those few bring most of the light. So a part of the rays is guided to lit
+// regions, and every ray is weighted by the density of both kinds together. The mean does not
+// depend on the guiding, and no ray counts more than `1 / least_by_cosine` times.
 //
-// How many: the noise is least where rays are as dense as the root of the mean square of what they
-// bring (Kahn & Marshall, "Methods of Reducing Sample Size in Monte Carlo Computations", 1953).
+// The noise is least if the density of rays is proportional to the root mean square of what they
+// bring [1]. Used for records, viewing rays and sensors alike.
+//
+// References: [1] Kahn & Marshall, "Methods of Reducing Sample Size in Monte Carlo Computations",
+// 1953.
 #pragma once
 
 #include <array>
@@ -21,23 +24,23 @@
 
 namespace troffer {
 
-// What one ray met, of those that tell what a picture asks for.
+// Hit of one pilot gather ray.
 struct PilotHit {
   CellHit hit;
   uint32_t cell = 0;
-  float share = 0;   // what the picture asks it for, over all rays
+  float share = 0;   // weight of the ray among all pilot rays, by what its viewing ray carries
   float weight = 0;  // luminance of the irradiance that it brings, over that of the cell
 };
 
-// A sphere around bright cells.
+// A lit region: a sphere around bright cells.
 struct BrightPlace {
   Vec3 centre;
   float radius = 0;
-  Vec3 normal;            // mean of those of its surfaces: short where they are turned many ways
-  float mean_square = 0;  // of the irradiance that a ray brings which meets them
+  Vec3 normal;            // mean over its surfaces: short where these face different ways
+  float mean_square = 0;  // of the irradiance that a ray brings that meets the region
 };
 
-// Where its cells were met.
+// Pilot hits within one lit region: the targets of visibility tests.
 struct BrightHits {
   static constexpr size_t most = 8;
 
@@ -45,9 +48,9 @@ struct BrightHits {
   uint32_t count = 0;
 };
 
-// What about there is seen of all places.
+// Visibility of all lit regions from some places.
 struct BrightSight {
-  std::vector<float> visible;  // of each, the share that is seen; over what is expected of it
+  std::vector<float> visible;  // per region: the visible share, times found over expected light
   float rest = 0;              // mean square of the irradiance that other rays bring
 };
 
@@ -57,13 +60,14 @@ class BrightPlaces {
   static constexpr size_t most_tries = most_places * BrightHits::most;
 
   BrightPlaces() = default;
-  // None where it is evenly bright. irradiance: of cells, of this size. The tracer must outlive it.
+  // Finds lit regions among the cells that the pilot has seen; none where brightness is even.
+  // irradiance: per cell. cell_size: metres. The tracer must outlive it.
   BrightPlaces(const Tracer& tracer, std::vector<PilotHit> seen, std::span<const Rgb> irradiance,
                float cell_size);
 
   std::span<const BrightPlace> all() const { return places_; }
-  // As known before any ray is sent. Of each place, how much of it is seen from some places on
-  // average, of which a few are tried, by about so many rays in all.
+  // Returns the visibility of each region before any gather ray is traced: its mean over some of
+  // the places `from`, tested by about `rays` rays in all.
   BrightSight sight_from(std::span<const CellHit> from, size_t rays = most_tries) const;
 
  private:
@@ -73,32 +77,35 @@ class BrightPlaces {
   float rest_ = 0;
 };
 
-// How rays that gather light at one place are drawn.
+// Distribution of the gather rays from one place.
 class GatherAim {
  public:
+  // Least share of rays drawn by the cosine.
   static constexpr float least_by_cosine = 0.5f;
 
-  // By the cosine alone.
+  // The cosine distribution.
   GatherAim() = default;
   GatherAim(const BrightPlaces& places, std::span<const float> visible, float rest,
             const CellHit& at);
   GatherAim(const BrightPlaces& places, const BrightSight& sight, const CellHit& at)
       : GatherAim(places, sight.visible, sight.rest, at) {}
 
-  // The direction of a ray, and what it counts, over one that is drawn by its cosine.
+  // Returns the direction of a ray. weight: what the ray counts, relative to a cosine-distributed
+  // one.
   Vec3 direction(const CellHit& at, Vec2 number, float& weight) const;
-  // … with which it is drawn, per steradian.
+  // Returns the density of a direction, per steradian.
   float density(const CellHit& at, const Vec3& direction) const;
   bool is_towards_bright(const Vec3& direction) const { return density_towards(direction) > 0; }
-  // Mean over rays by cosine of the square of what those bring that are towards bright places.
+  // Mean over cosine-distributed rays of the squared irradiance of those towards lit regions, as
+  // expected from the pilot.
   float expected() const { return expected_; }
 
  private:
   struct Cone {
     Frame frame;
-    float height = 0;   // 1 - cosine of its half angle
-    float share = 0;    // of rays
-    float density = 0;  // of those, per steradian, all rays being 1
+    float height = 0;   // 1 - cosine of the half angle
+    float share = 0;    // share of rays
+    float density = 0;  // share over solid angle, per steradian
   };
 
   float density_towards(const Vec3& direction) const;
@@ -107,12 +114,13 @@ class GatherAim {
   std::vector<Cone> cones_;
 };
 
-// What the first rays from about there have brought, for those that come later. They are drawn by
-// it, but do not count it: so their mean stays what it is.
+// Statistics of the first rays from some places. They correct the distribution of later rays, but
+// not that of the first rays themselves, whose mean stays unbiased.
 class BrightTally {
  public:
-  // irradiance: the luminance that a ray brought, weight included.
+  // Adds a ray. irradiance: the luminance that it brought, weight included.
   void add(const GatherAim& aim, const Vec3& direction, float weight, float irradiance);
+  // Corrects `sight` by what the rays have brought.
   void tell(BrightSight& sight) const;
 
  private:

@@ -19,25 +19,25 @@ namespace troffer {
 namespace {
 
 // All measured: docs/cells.md.
-constexpr float size_of_median = 0.06f;  // of a cell, of the median length of gather rays …
-constexpr double size_by_error = 0.58;   // … for fine errors; larger ones take larger cells
-// A cell with fewer first rays than this gets its light straight from sources by draws, this many
-// for a ray.
+constexpr float size_of_median = 0.06f;  // cell size over median ray length, for fine errors
+constexpr double size_by_error = 0.58;   // power of the error by which cells are larger above those
+// Cells with fewer first rays than this get direct light from light samples, not from certificates:
+// this many samples per ray.
 constexpr uint32_t rays_for_proofs = 4, draws_of_ray = 2;
 constexpr int most_rounds = 12;
 constexpr size_t tasks_at_a_time = 1 << 14;
-// Points for which so many times as many rays are worth it, or more, get them.
+// Least factor by which points must need more rays of cells for these to be traced.
 constexpr double enough_times_more = 1.5;
 constexpr size_t refining_tasks_at_a_time = 1 << 16;
 
 using Clock = std::chrono::steady_clock;
 
-// All that look at cells first.
+// Everything that the pilot's gather rays have seen.
 struct Asking {
-  size_t askers = 0;           // viewing rays, and points
-  std::vector<PilotHit> seen;  // by gather rays …
-  std::vector<size_t> end;     // … of one task after the other, up to here
-  uint32_t rays = 0;           // of each task
+  size_t askers = 0;           // viewing rays and points
+  std::vector<PilotHit> seen;  // hits, one task after the other
+  std::vector<size_t> end;     // end of each task in `seen`
+  uint32_t rays = 0;           // per task
 };
 
 class Builder {
@@ -53,7 +53,7 @@ class Builder {
         plan_(rows_, options.error, options.seed) {}
 
   void ask(const CellPilot& pilot);
-  // False once stopped, or where cells are too many.
+  // False if stopped, or if there are too many cells.
   bool make_rows(const std::function<void(double)>& progress);
   std::unique_ptr<Cells> finish(const DirectLight& direct, const CellPilot& pilot,
                                 Clock::time_point start);
@@ -82,11 +82,11 @@ class Builder {
   CellRows rows_;
   RowPlan plan_;
   Asking asking_;
-  size_t entries_kept_ = 0;  // of rows_, from the store
+  size_t entries_kept_ = 0;  // number of entries of rows_ that the store had
   CellStatistics statistics_;
 };
 
-// What is kept, or an empty map of cells as large as suits what was seen.
+// Takes the map of the store, or makes an empty one with a cell size that suits what was seen.
 void Builder::start_map(const CellsSeen& seen) {
   if (store_ != nullptr && store_->map) {
     map_ = std::make_shared<CellMap>(*store_->map);
@@ -103,7 +103,7 @@ void Builder::start_map(const CellsSeen& seen) {
   const float size =
       size_of_median *
       float(std::pow(coarseness(options_.error, RowPlan::fine_error), size_by_error));
-  // Finer than this, voxels would be no larger than the rounding of positions.
+  // Smaller voxels would be no larger than the rounding of positions.
   const Box box = bounds(scene_.scene);
   const float least = box.is_empty() ? 1.0f : std::max(1e-5f * box.diagonal(), least_cell);
   map_ = std::make_shared<CellMap>(scene_.tracer, std::max(size * median, least));
@@ -128,7 +128,7 @@ void Builder::ask(const CellPilot& pilot) {
   const size_t tasks_of_rays = tasks.size();
   CellsSeen seen;
   trace_cell_rays(walks_, nullptr, tasks, options_.threads, options_.group, stop_, seen, counters_);
-  if (stop_.load()) seen.seen.clear();  // not all of them
+  if (stop_.load()) seen.seen.clear();  // incomplete
   for (const PilotPlace& p : places) {
     if (!p.is_gloss) continue;
     seen.seen.push_back({uint32_t(tasks.size()), no_cell, p.distance, Rgb{1}, p.hit});
@@ -146,7 +146,7 @@ void Builder::ask(const CellPilot& pilot) {
     asking_.seen.push_back({c.hit, cell, share, weight});
   }
   asking_.end.resize(tasks_of_rays, asking_.seen.size());
-  plan_.see(map_->size());  // what is kept, where nothing is seen
+  plan_.see(map_->size());  // includes kept cells that the pilot does not see
   plan_.end_asking();
   rows_.finish(map_->size());
 }
@@ -158,7 +158,7 @@ std::span<const CellHit> Builder::hits_of(const CellTask& task) const {
   return task.is_second_half ? hits.subspan(half) : hits.first(half);
 }
 
-// New cells where there were none, and the rows.
+// Adds cells for hits without one, and the rows.
 void Builder::note(const std::vector<CellTask>& tasks, CellsSeen& seen) {
   std::vector<RowEntry> entries;
   size_t at = 0;
@@ -194,8 +194,8 @@ bool Builder::run(const std::vector<CellTask>& tasks) {
   return true;
 }
 
-// These, and then first rays of all that needs them. False once stopped, or where cells are too
-// many.
+// Traces these tasks and then, round by round, first rays of all cells that need them. False if
+// stopped, or if there are too many cells.
 bool Builder::run_and_go_on(std::vector<CellTask> tasks, double most_cells,
                             const std::function<void(double)>& progress) {
   for (int round = 1; !tasks.empty(); ++round) {
@@ -208,7 +208,7 @@ bool Builder::run_and_go_on(std::vector<CellTask> tasks, double most_cells,
   return !stop_.load();
 }
 
-// As many further rays as first ones.
+// Traces first rays, and then about as many further ones by importance.
 bool Builder::make_rows(const std::function<void(double)>& progress) {
   const double most = options_.most_cells;
   if (double(map_->size()) > most || !run_and_go_on(plan_.first_tasks(), most, progress))
@@ -216,7 +216,8 @@ bool Builder::make_rows(const std::function<void(double)>& progress) {
   return has_enough() || run_and_go_on(plan_.further_tasks(map_->frozen()), most, progress);
 }
 
-// So many times as many rays as there are. Not of narrow cells: gather rays pass them on.
+// Traces rays until there are `times` as many. Cells of sub-cell features get none, because gather
+// rays do not read them.
 bool Builder::refine(double times) {
   std::vector<CellTask> tasks = plan_.refining_tasks(times * double(rows_.ray_count()));
   std::erase_if(tasks, [&](const CellTask& t) { return map_->is_narrow(t.cell); });
@@ -229,8 +230,8 @@ bool Builder::refine(double times) {
   return run_and_go_on(plan_.first_tasks(), std::numeric_limits<double>::infinity(), nullptr);
 }
 
-// How many times the rays that there are: for what points err by the noise of cells, but for narrow
-// ones, which their rays pass.
+// Returns how many times as many rays the cells should have for the points. Noise of cells on
+// sub-cell features does not count, because gather rays do not read these.
 double Builder::rays_for_points(const DirectLight& direct, const CellPilot& pilot,
                                 const CellDirectLight& lit, const CellLight& light) {
   if (options_.points.most_rays <= 0 || store_ != nullptr) return 1;
@@ -248,14 +249,14 @@ double Builder::rays_for_points(const DirectLight& direct, const CellPilot& pilo
   return times_as_many_rays(noise, double(rows_.ray_count()));
 }
 
-// Light straight from sources, where it is not kept, or there yet; false once stopped.
+// Adds direct light where the store has none of the asked error; false if stopped.
 bool Builder::add_direct(const DirectLight& direct, CellDirectLight& lit) {
   size_t first = lit.irradiance.size();
   if (first == 0 && map_->frozen() > 0 && store_->direct_error <= options_.direct_error) {
     lit = {std::move(store_->direct), std::move(store_->direct_half_difference)};
     first = map_->frozen();
   }
-  // What is kept may matter more to the next view.
+  // Kept cells all get full direct light, because they may matter more to the next view.
   std::vector<uint8_t> draws(map_->size(), 0);
   for (uint32_t c = 0; store_ == nullptr && c < draws.size(); ++c)
     if (plan_.first_rays(c) < rays_for_proofs)
@@ -265,7 +266,8 @@ bool Builder::add_direct(const DirectLight& direct, CellDirectLight& lit) {
   return !stop_.load();
 }
 
-// Hits are no longer needed but by those who go on from here.
+// Moves the results to the store. Without one the hits are freed, since only further views need
+// them.
 void Builder::keep(const CellDirectLight& lit) {
   if (store_ == nullptr) return map_->forget_hits();
   const bool is_relit = map_->frozen() > 0 && store_->direct_error > options_.direct_error;

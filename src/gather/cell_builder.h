@@ -1,5 +1,6 @@
-// Makes cells: where the rays hit that a picture will send, and where rays from cells hit, until
-// next to nothing of the light comes from cells that know nothing of others (docs/cells.md).
+// Makes cache cells where pilot gather rays hit, and where rays from cells hit. Ends when cells
+// without a row carry a negligible share of the light (docs/cells.md). Called once per picture or
+// list of points (methods/methods.cpp).
 #pragma once
 
 #include <functional>
@@ -17,7 +18,7 @@
 
 namespace troffer {
 
-// From where light will be asked for: some of a picture's viewing rays, all over it, or points.
+// Places where light will be asked for: pilot viewing rays all over a picture, or measuring points.
 struct CellPilot {
   ViewingRays viewing;
   std::vector<CellHit> places;
@@ -26,22 +27,22 @@ struct CellPilot {
 struct CellBuilderOptions {
   int threads = 0;
   uint64_t seed = 0;
-  double direct_error = 0;  // asked of the light straight from sources
-  double error = 0.01;      // asked of the picture
-  // None are made where there would be more than this.
+  double direct_error = 0;  // asked error of direct light at cells
+  double error = 0.01;      // asked error of the picture, or of the points
+  // Limit of the number of cells; with more, make_cells() returns null.
   double most_cells = std::numeric_limits<double>::infinity();
-  ProcessGroup* group = nullptr;  // others that make the same cells; may be null
-  GatheringPoints points{};  // how those of the pilot gather; most_rays 0: nothing is done for that
-  // Once set, no further rows are made: light that only they would bring is missing, and
-  // CellStatistics::unresolved estimates its share. Null: never.
-  const StopFlag* enough = nullptr;
+  ProcessGroup* group = nullptr;  // processes that make the same cells together; may be null
+  GatheringPoints points {  // Once set, no further rows are made. The light that only they would
+                            // bring is missing;
+    // CellStatistics::unresolved estimates its share. Null: never set.
+    const StopFlag* enough = nullptr;
+  };  // how the pilot's points gather; most_rays 0: there are none
 };
 
-// direct: light straight from sources. store: what is kept from before, or nothing yet; left with
-// what there is now (empty once stopped), and may be null. Cells that have been kept serve as they
-// are; only what the pilot asks for beyond them is made. Null once `stop` is set, or
-// where there would be too many. progress: 0 to 1;
-// may be null.
+// Makes cells, or adds what the pilot needs to those of `store`, which stay as they are.
+// direct: computes direct light at cells. store: cells of earlier views, or empty; holds all cells
+// afterwards; may be null. progress: called with 0 to 1; may be null.
+// Returns null if `stop` is set or there are too many cells; `store` must not be used then.
 std::unique_ptr<Cells> make_cells(const PreparedScene& scene, const DirectLight& direct,
                                   const CellPilot& pilot, const CellBuilderOptions& options,
                                   CellStore* store, const std::function<void(double)>& progress,

@@ -31,7 +31,7 @@ struct Worker {
   Counters counters;
 };
 
-uint64_t spread_bits(uint64_t x) {  // 21 bits, each third
+uint64_t spread_bits(uint64_t x) {  // moves 21 bits to every third place
   x &= 0x1fffff;
   x = (x | x << 32) & 0x1f00000000ffffull;
   x = (x | x << 16) & 0x1f0000ff0000ffull;
@@ -40,7 +40,7 @@ uint64_t spread_bits(uint64_t x) {  // 21 bits, each third
   return (x | x << 2) & 0x1249249249249249ull;
 }
 
-// Cells from number `first` on, along a space-filling curve.
+// Returns the cells from number `first` on, ordered along a space-filling curve.
 std::vector<uint32_t> cells_in_order(const CellMap& map, size_t first) {
   std::vector<std::pair<uint64_t, uint32_t>> keys;
   keys.reserve(map.size() - first);
@@ -63,7 +63,7 @@ std::string name_of_hit(const void*, size_t i) {
   return "cell hit " + std::to_string(i);
 }
 
-// The mean of n values of a cell, and what halves of them differ by.
+// Sets a cell's mean of n values, and half the difference of their halves.
 template <typename F>
 void set(CellDirectLight& light, uint32_t cell, size_t n, const F& value) {
   std::array<Rgb, 2> halves;
@@ -77,7 +77,7 @@ void set(CellDirectLight& light, uint32_t cell, size_t n, const F& value) {
         luminance(halves[0]) / float(n / 2) - luminance(light.irradiance[cell]);
 }
 
-// Of hits that are asked one after the other, each with a stream of its own; to w.out.
+// Computes direct light at hits, each with its own random stream, into w.out.
 void light_hits(const GatherWalks& walks, const DirectLight& direct,
                 std::span<const StreamedHit> hits, Worker& w) {
   if (!w.direct) w.direct = direct.make_scratch();
@@ -121,7 +121,7 @@ void light_group(const CellMap& map, const GatherWalks& walks, const DirectLight
   }
 }
 
-// As light_group(), by draws.
+// Like light_group(), by light samples.
 void sample_group(const CellMap& map, const GatherWalks& walks, std::span<const uint32_t> cells,
                   std::span<const uint8_t> samples, Worker& w, CellDirectLight& light) {
   w.arrivals.clear();

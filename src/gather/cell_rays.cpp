@@ -9,19 +9,19 @@ namespace troffer {
 namespace {
 
 constexpr size_t rays_at_a_time = 1024;
-// Narrow things that a ray looks at closely, one after the other, before it takes one as it is.
+// Limit of sub-cell features that a ray resolves in succession; it then reads the next one's cell.
 constexpr int most_close = 8;
 
 struct RayWorker {
   GatherScratch gather;
-  std::vector<GatherArrival> close;  // at narrow things
+  std::vector<GatherArrival> close;  // hits on sub-cell features
   std::vector<uint32_t> tasks;       // of each ray
-  std::vector<float> scales;         // of each task of a chunk: rays over what their light counts
+  std::vector<float> scales;  // per task of a chunk: rays over the sum of their coats' factors
   Counters counters;
 };
 
 struct Chunk {
-  size_t first = 0, last = 0;  // tasks
+  size_t first = 0, last = 0;  // range of tasks
   std::vector<CellSeen> seen;
 };
 
@@ -43,9 +43,9 @@ std::string name_of_ray(const void* worker, size_t i) {
   return "ray of cell task " + std::to_string(static_cast<const RayWorker*>(worker)->tasks[i]);
 }
 
-// What light counts below a coat is over what it counts on average, which a task's few rays miss:
-// were their light not taken over theirs, cells whose rays see each other head on would send back
-// more than they get, bounce after bounce.
+// Traces the rays of a chunk of tasks. A coat's factors have a mean of 1, which the few rays of a
+// task miss. They are normalised by the task's own mean. Otherwise cells that see each other head
+// on would amplify light at every bounce.
 void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const CellTask> tasks,
                  Chunk& chunk, std::vector<Rgb>& emission, RayWorker& w) {
   GatherScratch& g = w.gather;
@@ -53,7 +53,7 @@ void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const C
   w.tasks.clear();
   w.scales.assign(chunk.last - chunk.first, 1);
   for (size_t t = chunk.first; t < chunk.last; ++t) {
-    if (tasks[t].from.empty()) continue;  // of a file of cells that lies
+    if (tasks[t].from.empty()) continue;  // in a damaged file of cells
     float shares = 0;
     for (uint32_t k = 0; k < tasks[t].count; ++k) {
       Walk walk;
@@ -95,7 +95,7 @@ void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const C
           (g.light.direct[i] + g.light.indirect[i]) * (pi_f * w.scales[w.tasks[i] - chunk.first]);
     walks.bounce(w.close, g);
   }
-  // What was seen by way of mirrors, or of narrow things, came later.
+  // Hits by way of mirrors or sub-cell features are out of order.
   std::stable_sort(chunk.seen.begin(), chunk.seen.end(),
                    [](const CellSeen& a, const CellSeen& b) { return a.task < b.task; });
 }

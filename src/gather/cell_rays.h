@@ -1,4 +1,5 @@
-// Rays from cells, and from the places at which a picture asks: which cells they see.
+// Traces rays of cells and of the pilot, and finds the cells that they see. Used by
+// cell_builder.cpp. Results are the same for any number of threads and processes.
 #pragma once
 
 #include <span>
@@ -9,19 +10,19 @@
 
 namespace troffer {
 
-// Rays `first` … first + count - 1 of a sequence, dealt to some hits in turn.
+// Rays `first` … first + count - 1 of a random sequence, which start at some hits in turn.
 struct CellTask {
-  uint32_t cell = no_cell;  // whose rays they are, or none's
+  uint32_t cell = no_cell;  // owner of the rays; no_cell: the pilot
   uint32_t first = 0, count = 0;
   uint64_t stream = 0;
   float weight = 1;
   std::span<const CellHit> from;
-  // Which half of the cell's rays these are of. Either half goes from its own half of the cell's
-  // hits, so that what halves differ by tells of the choice of hits as well.
+  // Half of the cell's rays that these belong to. Each half starts from its own half of the cell's
+  // hits, so the difference of halves includes the choice of hits.
   bool is_second_half = false;
 };
 
-// What one of them sees.
+// One hit of a task's rays.
 struct CellSeen {
   uint32_t task = 0, cell = no_cell;
   float distance = 0;
@@ -30,13 +31,15 @@ struct CellSeen {
 };
 
 struct CellsSeen {
-  std::vector<CellSeen> seen;  // by tasks
-  // Of each task: irradiance times rays, of sources that were run into, or drawn at narrow things.
+  std::vector<CellSeen> seen;  // ordered by task
+  // Per task: irradiance times rays, from sources that rays ran into, or that were sampled at
+  // sub-cell features.
   std::vector<Rgb> emission;
 };
 
-// map: may be null; else cells that it has are found, and rays look closely at narrow things if it
-// does. crew: may be null. Not all of them once `stop` is set.
+// Traces all tasks. map: null, or the map in which cells are looked up; then rays resolve sub-cell
+// features if the map does (CellMap::look_closely). group: may be null. Incomplete once `stop` is
+// set.
 void trace_cell_rays(const GatherWalks& walks, const CellMap* map, std::span<const CellTask> tasks,
                      int threads, ProcessGroup* group, const StopFlag& stop, CellsSeen& out,
                      Counters& counters);

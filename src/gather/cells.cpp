@@ -11,16 +11,16 @@ namespace troffer {
 
 namespace {
 
-// Of rays that find no cell, or one that is too near, one after the other.
+// Limit of successive rays that find no cell, or one that is too near.
 constexpr int most_bounces = 16;
-// … or are shorter than a cell is wide; to measured points so many: in a gap of 5 cm behind a
-// luminaire nearly all rays are short, one after the other, and by fewer of them light there was 1
-// to 4 % too dark. In pictures that costs more time than it is worth (docs/cells.md).
+// Limit of successive rays that are shorter than a cell is wide: in pictures, and at measuring
+// points. In a gap of 5 cm behind a luminaire nearly all rays are short. With fewer of them points
+// there are 1 to 4 % too dark, but pictures would take longer (docs/cells.md).
 constexpr int short_bounces = 4, most_short = 8;
-// Rays that are followed at a time: few enough for what is known of them to stay in the caches.
+// Rays that are followed together: few enough to stay in the caches.
 constexpr size_t rays_of_part = 256;
-// Whether looking closely is worth it: places and rays of each that tell, and how many times what
-// variance there is without it.
+// Test of look_closely_where_worth_it(): places, rays per place, and the largest acceptable
+// variance relative to that without looking closely.
 constexpr size_t most_tried = 16;
 constexpr uint32_t rays_of_try = 1024;
 constexpr double most_times_usual = 3;
@@ -50,9 +50,9 @@ CellLightAt Cells::light_at(const CellHit& hit) const {
   return {direct_[cell], irradiance_[cell] - direct_[cell]};
 }
 
-// What one arrival sees: the cell's irradiance, or its direct part where what is behind it is
-// looked at more closely; false where there is no cell, or what the ray meets first is narrow, and
-// looked at closely: light straight from sources is drawn there, and the ray goes on.
+// Adds what one arrival sees. That is the cell's irradiance, or, for a short first ray, only its
+// direct part: a further ray then brings the rest. False if the arrival must sample lights and go
+// on: it has no cell, or its first hit is on a sub-cell feature that is to be resolved.
 bool Cells::look_up(const GatherArrival& a, uint64_t voxel, int bounce, CellsScratch& s) const {
   const uint32_t cell = map_->find(a.hit, a.distance, voxel);
   if (cell == no_cell) return false;
@@ -93,7 +93,7 @@ void Cells::gather(size_t rays, CellsScratch& s, Counters& counters) const {
   TROFFER_CHECK(next == s.walks.end());
 }
 
-// s.gather.walks, of indices below `rays`, to s.part.
+// Follows s.gather.walks, of indices below `rays`, into s.part.
 void Cells::gather_part(size_t rays, CellsScratch& s, Counters& counters) const {
   s.part.reset(rays);
   for (int bounce = 0; bounce < most_bounces && !s.gather.walks.empty(); ++bounce) {
@@ -110,7 +110,7 @@ void Cells::gather_part(size_t rays, CellsScratch& s, Counters& counters) const 
       const GatherArrival& a = s.arrivals[i];
       float& distance = s.part.distance[a.walk.index];
       if (bounce == 0 && (distance == 0 || a.length < distance)) distance = a.length;
-      // The mean of a cell wider than the ray is long is not what the ray sees.
+      // A ray shorter than the cell is wide does not see the mean of the cell.
       const float short_ray = (bounce > 0 && tells_noise() ? 1.0f : 0.25f) * map_->near();
       const bool is_short =
           a.distance < short_ray && bounce < (tells_noise() ? most_short : short_bounces);
@@ -126,7 +126,7 @@ void Cells::gather_part(size_t rays, CellsScratch& s, Counters& counters) const 
   }
 }
 
-// Of one ray over the square of what it brings, the mean over some of these places.
+// Variance of one gather ray over its squared mean, averaged over some of the places.
 double Cells::variance_of_rays(std::span<const CellHit> places, uint64_t seed,
                                Counters& counters) const {
   CellsScratch s;

@@ -1,5 +1,6 @@
-// Light between surfaces, solved on cells (cells/cell_map.h, docs/cells.md): what is left of it
-// once they are made, and how places around look it up.
+// Light between surfaces, solved on cache cells (cells/cell_map.h, docs/cells.md), and its lookup
+// by gather rays. Made by make_cells() (cell_builder.h); used by GatherPass and CellsIndirect. Any
+// number of threads may call const functions, each with its own scratch.
 #pragma once
 
 #include <cstdint>
@@ -13,40 +14,40 @@
 
 namespace troffer {
 
-// What making the cells took, and how well it came out.
+// Cost and quality of the cells.
 struct CellStatistics {
   uint64_t cells = 0, entries = 0, rays = 0;
   int rounds = 0, iterations = 0;
   double size = 0;        // of a cell, metres
-  double typical = 0;     // luminance of indirect light in the picture
-  double unresolved = 0;  // share of the light asked for that cells without a row would bring
+  double typical = 0;     // mean luminance of indirect light in the picture
+  double unresolved = 0;  // share of the asked light that comes by cells without a row
   double bytes = 0;
   double seconds = 0;
 };
 
-// What lookups bring a ray: irradiance over π would be radiance.
+// Light that gather rays find, as irradiance: π × radiance.
 struct GatheredLight {
-  std::vector<Rgb> irradiance;         // of each ray: π × radiance
-  std::vector<float> half_difference;  // by the noise of cells: luminance (CellLight)
-  std::vector<float> distance;  // to the first surface that is matte or black, all the way; 0: none
-  NoiseDraws noise{};           // of the sum of all rays; 0: none are known
+  std::vector<Rgb> irradiance;         // per ray
+  std::vector<float> half_difference;  // per ray: luminance, draw of the noise of cells (CellLight)
+  std::vector<float> distance;  // metres to the first matte or black surface, all the way; 0: none
+  NoiseDraws noise{};           // of the sum over all rays; 0 if unknown
 
   void reset(size_t rays);
 };
 
-// Irradiance at a place.
+// Irradiance at a place, straight from sources and reflected.
 struct CellLightAt {
   Rgb direct, indirect;
 };
 
 struct CellsScratch {
-  std::vector<Walk> walks;  // to be followed
-  GatheredLight light;      // what they bring
+  std::vector<Walk> walks;  // input
+  GatheredLight light;      // result for `walks`
 
-  // Of some of them, by indices of their own.
+  // One part of the walks, with indices of its own.
   GatherScratch gather;
   std::vector<GatherArrival> arrivals, again;
-  std::vector<uint64_t> voxels;  // of arrivals
+  std::vector<uint64_t> voxels;  // per arrival
   GatheredLight part;
 };
 
@@ -67,24 +68,24 @@ class Cells {
 
   const CellStatistics& statistics() const { return statistics_; }
   const GatherWalks& walks() const { return walks_; }
-  // Whether what gather() brings comes with draws of what it is off by.
+  // True if gather() also returns draws of the noise of cells.
   bool tells_noise() const { return !noise_.empty(); }
-  // For what the pilot asks for.
+  // Lit regions among the cells that the pilot saw.
   const BrightPlaces& bright_places() const { return bright_; }
 
-  // From here on rays that gather look closely at narrow things (CellMap::look_closely), unless
-  // they would err so much more at some of these places that it is not worth it: amid clutter, or
-  // where lights are hard to draw.
+  // Makes gather rays resolve sub-cell features from here on (CellMap::look_closely). Does nothing
+  // if tests at some of these places show that it costs too much variance: amid clutter, or where
+  // lights are hard to sample.
   void look_closely_where_worth_it(std::span<const CellHit> places, uint64_t seed,
                                    Counters& counters);
 
-  // Follows s.walks, of ascending indices below `rays`, and gathers what they see: s.light.
+  // Follows s.walks, of ascending indices below `rays`, and puts what they see into s.light.
   void gather(size_t rays, CellsScratch& s, Counters& counters) const;
-  // Irradiance at a place seen from this far, but for what comes straight from sources, and a draw
-  // of the error of its luminance (CellLight); false where there is no cell that is good enough.
+  // Reads the indirect irradiance at a place seen from this distance, and a draw of the error of
+  // its luminance (CellLight). False if there is no cell, or the distance is below CellMap::near().
   bool indirect_at(const CellHit& hit, float distance, Rgb& irradiance,
                    float& half_difference) const;
-  // That of the cell there; black where there is none.
+  // Returns the irradiance of the finest cell there; black if there is none.
   CellLightAt light_at(const CellHit& hit) const;
 
  private:
@@ -95,7 +96,7 @@ class Cells {
   std::shared_ptr<const CellMap> map_;
   std::vector<Rgb> direct_, irradiance_;
   std::vector<float> half_difference_;
-  std::vector<NoiseDraws> noise_;  // empty: not known
+  std::vector<NoiseDraws> noise_;  // empty: unknown
   CellStatistics statistics_;
   BrightPlaces bright_;
   bool looks_closely_ = false;

@@ -11,19 +11,19 @@ namespace troffer {
 
 namespace {
 
-// Gather rays from what a viewing ray hits, and from what a further one of its pixel does.
+// Limits of gather rays at a hit; the last holds for further viewing rays of a pixel.
 constexpr uint32_t least_rays = 4, most_rays = 64, most_further_rays = 16;
-// Viewing rays that a pixel has at least.
+// Viewing rays that every pixel has.
 constexpr uint32_t first_samples = 4;
 
-// Names the random numbers of gather rays with an effort divisor above 1.
+// Seeds the random numbers of gather rays with an effort divisor above 1.
 constexpr uint64_t reduced_numbers = 0x7468'7266;
 
-// As many as the pixel wants, in powers of two, if it has no other samples than its first. Where it
-// has further ones, n in all, these want fewer: with wanted / (2 s + 1) from sample s the sum of
-// 1 / rays is n² / wanted for every n, and the mean over samples, all of which count the same, has
-// the noise of `wanted` rays. But a hit takes as long as many rays, so they are not too few, unless
-// the pixel gets them with an effort divisor above 1.
+// Returns the number of gather rays of a hit, a power of two. The first samples of a pixel share
+// what it wants equally. Sample s of further ones gets wanted / (2 s + 1). The sum of 1 / rays is
+// then n² / wanted for every final number n, so the mean over samples has the noise of `wanted`
+// rays. A hit costs as much as many rays, so the number has a lower limit, unless the pixel asks
+// for an effort divisor above 1.
 uint32_t rays_of_hit(float wanted, uint32_t sample, uint32_t effort_divisor) {
   const auto as_wanted = [&](float hits, uint32_t most) {
     uint32_t n = least_rays;
@@ -36,13 +36,13 @@ uint32_t rays_of_hit(float wanted, uint32_t sample, uint32_t effort_divisor) {
                   as_wanted(float(2 * sample + 1), most_rays));
 }
 
-// How many gather rays a hit gets, and by which numbers.
+// Number of gather rays of a hit, and their random numbers.
 struct GatherNumbers {
   uint32_t rays, first;
   uint64_t stream;
 };
 
-// Those of a pixel's first samples follow each other, and so do those with an effort divisor
+// Rays of a pixel's first samples continue one sequence, and so do those with an effort divisor
 // above 1.
 GatherNumbers numbers_of_hit(float wanted, const Walk& at, uint32_t effort_divisor) {
   const bool is_first = at.sample < first_samples;
@@ -56,11 +56,11 @@ GatherNumbers numbers_of_hit(float wanted, const Walk& at, uint32_t effort_divis
 }  // namespace
 
 struct CellsIndirect::Scratch final : IndirectLightScratch {
-  SampleRequest request;  // of the batch
+  SampleRequest request;  // of the current batch
   CellsScratch cells;
-  // Per hit whose rays are in cells.walks: of which viewing ray, and where its rays end.
+  // Per hit whose rays are in cells.walks: index of its viewing ray, and end of its rays.
   std::vector<uint32_t> indices, ends;
-  // Per ray: what the hit makes of irradiance by it, times what the walk carries.
+  // Per ray: factor from the irradiance that it brings to light of the viewing ray.
   std::vector<Rgb> weights;
   SensorAims aims;
   GatherRecords::KnownAim aim;
@@ -78,7 +78,8 @@ std::unique_ptr<IndirectLightScratch> CellsIndirect::make_scratch() const {
 
 namespace {
 
-// What a hit sends on: of irradiance, and of the mean radiance that its gloss shows.
+// Factors of light that a hit sends on: of irradiance, and of the mean radiance that its gloss
+// shows.
 struct Weights {
   Rgb matte, gloss;
 };
@@ -161,7 +162,7 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
   }
 }
 
-// By the records of the pixel, and by cells.
+// Adds what first hits reflect according to the pixel's records and to cells.
 void CellsIndirect::know(const WaveHits& wave, RadianceBatch& out) const {
   CheckItems items;
   for (size_t i = 0; i < wave.size(); ++i) {
@@ -177,7 +178,7 @@ void CellsIndirect::know(const WaveHits& wave, RadianceBatch& out) const {
     FittedRecord fitted;
     const bool is_fitted =
         records_->irradiance_at(pixel.x, pixel.y, hit, gloss_of(v, scattering), true, fitted);
-    // Light from everywhere, gloss would show as much of it as what is matte.
+    // Gloss is taken to show as much as a matte surface of its reflectance would.
     const Rgb evenly = weights.matte + weights.gloss * inv_pi_f;
     out.known[at.index].direct += evenly * cell.direct;
     out.known[at.index].indirect +=
@@ -206,7 +207,7 @@ void CellsIndirect::flush(IndirectLightScratch& scratch, RadianceBatch& out,
     out.indirect_with_error[s.indices[i]] += luminance(sum) / n;
     out.drawn_error[s.indices[i]] += halves / n;
     if (out.direct_variance.empty()) continue;
-    // A single ray tells nothing: taken to vary by half of its square.
+    // A single ray has no spread: its variance is taken to be half of its square.
     const float mean = luminance(sum) / n;
     const float variance =
         n > 1 ? std::max(squares / n - sqr(mean), 0.0f) / (n - 1) : 0.5f * squares;

@@ -1,4 +1,5 @@
-// Indirect light by rays that gather what cells reflect (docs/cells.md).
+// Indirect light by gather rays that read cells (docs/cells.md). First hits of viewing rays take
+// the fit of the picture's records where it holds, and gather for themselves elsewhere.
 #pragma once
 
 #include <memory>
@@ -10,7 +11,7 @@ namespace troffer {
 
 class CellsIndirect final : public IndirectLight {
  public:
-  // records: of the picture; null: there is none.
+  // records: fits of the picture; null: there is no picture.
   CellsIndirect(std::shared_ptr<const Cells> cells, std::shared_ptr<const GatherRecords> records)
       : cells_(std::move(cells)), records_(std::move(records)) {}
 
@@ -22,7 +23,7 @@ class CellsIndirect final : public IndirectLight {
   void know(const WaveHits& wave, RadianceBatch& out) const override;
   void begin(const SampleRequest& request, IndirectLightScratch& scratch) const override;
   void flush(IndirectLightScratch& scratch, RadianceBatch& out, Counters& counters) const override;
-  // By one ray per sample.
+  // Traces one gather ray per sample.
   void gather(const SensorBatch& sensors, IndirectLightScratch& scratch, RadianceBatch& out,
               Counters& counters) const override;
 

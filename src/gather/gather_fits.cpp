@@ -1,4 +1,4 @@
-// What records make of one another's gathers: how many rays they want, and linear fits.
+// Sharing of gathers between records: how many further rays they need, and linear fits.
 #include "gather/gather_pass.h"
 
 #include <algorithm>
@@ -9,37 +9,41 @@ namespace troffer {
 namespace {
 
 constexpr float unit = 16;  // rays of a neighbour of weight 1 in fits
-// Gathers that follow a curve on one sequence of numbers err by less, together, than as many
-// independent ones, as which their spread counts them (measured: docs/cells.md).
+// Factor by which gathers along one curve, on one random sequence, err less together than their
+// spread suggests, which is that of independent ones. Measured: docs/cells.md.
 constexpr double gain_of_order = 2;
-// Beyond this radius the fit's own error is more than it saves.
+// Largest radius of a fit, in harmonic mean distances. Beyond it the fit's bias exceeds the noise
+// that it saves.
 constexpr float far_radius = 0.12f;
+// Least radius of a fit, in pixels.
 constexpr float least_pixels = 1.5f;
-// Fits hold within this share of the distance, times the root of the asked error; at most so far.
+// Distance from its record within which a fit holds, in harmonic mean distances: the first times
+// the root of the asked error, at most the second.
 constexpr float reach_of_error = 2, most_reach = 0.2f;
-// A lobe of this width or more shows what changes no faster than irradiance does: one over it.
+// Inverse of the lobe width from which on gloss changes no faster than irradiance.
 constexpr float full_width = 2;
-// Where neighbours are too few for a plane, their mean holds in their midst alone: no farther from
-// it than this share of the distance, times the asked error.
+// Too few neighbours for a plane give their mean, which holds only near their centroid: within this
+// share of the harmonic mean distance, times the asked error.
 constexpr double most_offset = 0.5;
-// Neighbours on either side that a fit looks at, of those within its radius.
+// Limits of neighbours that a fit reads on either side. Within its radius it skips pixels to keep
+// them.
 constexpr int few_along = 4, many_along = 8;
 
-// Which half of the pixels this one is of (the sequence of Thue and Morse, along either axis): of
-// any 3 × 3, and of those at any stride, there are about as many of either.
+// Returns the half of the pixels that this one belongs to (Thue-Morse sequence along both axes).
+// Every 3 × 3 pixels, at any stride, have about as many of either half.
 int half_of(int x, int y) {
-  uint32_t v = uint32_t(x) ^ uint32_t(y);  // of the parity of all their bits together
+  uint32_t v = uint32_t(x) ^ uint32_t(y);  // reduced to the parity of its bits
   for (const int shift : {16, 8, 4, 2, 1}) v ^= v >> shift;
   return int(v & 1);
 }
 
 }  // namespace
 
-// Whether the pixels around see something that stands before the record's surface, no farther from
-// it than a few pixels are apart, and turns its back on it: a panel a finger's breadth below a
-// ceiling. Behind its edge light changes by less than a pixel's width, whatever the record's few
-// rays saw of it. (In a corner, surfaces see one another, and light goes over into the dark
-// evenly.)
+// True if pixels around see a surface that stands close before the record's, with its back to it,
+// such as a panel a finger's breadth below a ceiling. "Close" means no farther than a few pixels
+// are apart. Behind the edge of such a thing light changes within less than a pixel, whatever the
+// record's few rays saw. Surfaces that see each other, as in a corner, do not count, because light
+// changes gradually there.
 bool GatherPass::is_beside(int x, int y, uint32_t r) const {
   constexpr float close = 3, least_height = 0.03f;
   const GatherRecord& at = out_.records_[r];
@@ -64,18 +68,20 @@ bool GatherPass::is_beside(int x, int y, uint32_t r) const {
   return found;
 }
 
-// Whether what one gathers says something of the other.
+// True if the gather at one record also says something about the other.
 bool GatherPass::is_neighbour(uint32_t r, uint32_t o, Part part) const {
   const GatherRecord &at = out_.records_[r], &n = out_.records_[o];
   if (part == &GatherRecord::gloss && n.place.material != at.place.material) return false;
   return is_one_surface(at.hit, n.hit, at.spacing);
 }
 
-// Rays count for as much as there are, so that records whose first rays chanced to meet something,
-// which get more, do not weigh too much of it in. But where light itself calls for more rays (the
-// dark beside a caustic, which it hardly reaches), places would count for more than others: so over
-// what is usual around them, in their half of the pixels. What the other half has has been decided
-// by what this one has met: it would count for less where that is bright.
+// Returns the mean number of rays of records around, in the record's own half of the pixels. Fits
+// weight a record by its rays over this mean.
+// Weights by rays dilute the luck of first rays that met something bright, since such records get
+// more. But light itself may call for more rays (in the dark beside a caustic), and whole places
+// must not count for more; hence the quotient.
+// The other half's numbers of rays follow from what this half has met. With them, a record would
+// count for less where its half is bright.
 float GatherPass::usual_rays(int x, int y, uint32_t r) const {
   float rays = 0, records = 0;
   const int half = half_of(x, y);
@@ -111,16 +117,16 @@ GatherPass::Surroundings GatherPass::around(int x, int y, uint32_t r, Part part,
             std::max(sums.squares / n.rays - mean * mean, 0.0f) * n.rays / (n.rays - 1) / unit;
         records += 1;
       });
-  // Rays that bring much light tell more of how it changes than others do. What a narrower lobe
-  // shows changes faster.
+  // Rays that bring much light say more about how it changes. Narrow lobes show faster changes.
   const float width = part == &GatherRecord::gloss ? std::min(full_width * at.width, 1.0f) : 1.0f;
   return {
       std::max(nearness / std::max(rays, 1.0f), bright_nearness / std::max(light, 1e-30f)) / width,
       variance / std::max(records, 1.0f), records};
 }
 
-// Every how many pixels a fit looks at: from the lattice that all records are on where pixels are
-// thinned at that lattice, from elsewhere at all four in turn.
+// Returns the stride at which a fit reads pixels. Under thinning all records that matter must be
+// met: from the lattice the stride is even, so only lattice pixels are read. From elsewhere it is
+// odd, so all four lattices take turns.
 int GatherPass::step_of(int x, int y, int step) const {
   if (step <= 1) return 1;
   if (!is_thinned_) return step;
@@ -151,7 +157,8 @@ LinearFit GatherPass::fit(int x, int y, uint32_t r, Part part, float radius, int
   return sums;
 }
 
-// Few neighbours do not tell how far they are spread; their rays do.
+// With few neighbours the residual of a fit underestimates the variance, so the variance of their
+// rays is a lower bound.
 FittedLight GatherPass::solved(const LinearFit& fit, const Surroundings& s) {
   constexpr int enough = 12;
   FittedLight light;
@@ -160,9 +167,9 @@ FittedLight GatherPass::solved(const LinearFit& fit, const Surroundings& s) {
   return light;
 }
 
-// Of the luminance of either sum's light, by that of all that the pixel sees there. around: that of
-// the light, not by the record's own few rays: what is bright would get few more, what is dark
-// beside it many.
+// Returns the allowed error of the luminance of one of the record's sums, from all light that the
+// pixel sees there. around: luminance of that sum by its surroundings. By the record's own few
+// rays, bright records would get few further rays and the dark ones beside them many.
 float GatherPass::allowed_error(const GatherRecord& r, Part part, float around) const {
   const Part other = part == &GatherRecord::matte ? &GatherRecord::gloss : &GatherRecord::matte;
   const float own =
@@ -171,9 +178,9 @@ float GatherPass::allowed_error(const GatherRecord& r, Part part, float around) 
   return float(options_.error) * 0.5f * (own + float(options_.typical)) / weight + 1e-20f;
 }
 
-// By what the other half of the pixels has met. Were it by its own rays too, or by theirs and its
-// own together, those would get no more that have chanced to miss what is small and bright, and
-// what is looked at again would be what was found too bright: all in all too dark.
+// Returns the number of further rays of a record, decided by what the other half of the pixels has
+// met. If its own rays took part, records that happened to miss a small bright thing would get no
+// more rays. Only those that met it would be corrected. The picture would become too dark.
 uint32_t GatherPass::further_rays(int x, int y, uint32_t r, Part part) const {
   const GatherRecord& at = out_.records_[r];
   Surroundings s = around(x, y, r, part, Asked::other_half);
@@ -184,7 +191,7 @@ uint32_t GatherPass::further_rays(int x, int y, uint32_t r, Part part) const {
   const FittedLight light = solved(fit(x, y, r, part, std::min(radius, most_pixels * at.spacing),
                                        few_along, are_others ? Asked::other_half : Asked::all),
                                    s);
-  // Both halves share what they have in the end.
+  // In the end both halves share their rays.
   const double sharers = are_others ? 2 : 1;
   const double wanted =
       light.spread / std::max(sharers * light.neighbours, 1.0) /
@@ -194,8 +201,8 @@ uint32_t GatherPass::further_rays(int x, int y, uint32_t r, Part part) const {
   return uint32_t(rays / 4 + 0.999) * 4;
 }
 
-// One of the sums, as far as the noise asks for, and no farther. Returns how far from there
-// irradiance would be about linear.
+// Fits one of the sums, over no larger radius than its noise needs. Returns the harmonic mean
+// distance of what is around.
 float GatherPass::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) const {
   const GatherRecord& at = out_.records_[r];
   const Surroundings s = around(x, y, r, part);
@@ -210,7 +217,8 @@ float GatherPass::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) 
   const LinearFit all = fit(x, y, r, part, radius, many_along);
   const FittedLight fine = solved(all, s);
   const double noise = fine.spread / std::max(fine.neighbours, 1.0);
-  // What is bent shows in a narrower fit, if its noise lets it: the error goes with the radius²
+  // The bias of a fit goes with radius². It is therefore 4/3 of what a fit of half the radius
+  // differs by beyond its noise.
   const FittedLight narrow = solved(fit(x, y, r, part, 0.5f * radius, few_along), s);
   const double apart = double(luminance(narrow.value)) - double(luminance(fine.value));
   const double chance = 2 * narrow.spread / std::max(narrow.neighbours, 1.0);
@@ -218,14 +226,14 @@ float GatherPass::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) 
   const double half = double((at.*part).half) / double(at.rays);
   fitted.value = fine.value;
   fitted.error = float(std::sqrt(noise + bend2 + half * half));
-  // Sent by where they lie, not by what they have met: were fits left out by their noise, those
-  // would go that have met what is small and bright, and those that missed it would stay.
+  // Decided by where neighbours lie, not by what they have met. Fits left out by their noise would
+  // be those that have met a small bright thing, and those that missed it would stay.
   fitted.is_one_sided = !all.is_plane() && all.offset() * double(radius) >
                                                most_offset * options_.error * double(distance);
   return distance;
 }
 
-// Of a pixel that shares nobody's.
+// Returns the rays of a pixel that gathers for itself.
 float GatherPass::own_rays(int x, int y, uint32_t r, Part part) const {
   const GatherRecord& at = out_.records_[r];
   return unit * around(x, y, r, part).variance /
@@ -243,7 +251,7 @@ FittedRecord GatherPass::fitted(int x, int y, uint32_t r) const {
   f.error = matte.error;
   f.gloss = gloss.value;
   f.gloss_error = gloss.error;
-  // What it errs by elsewhere goes with the square of how far.
+  // Away from its record, the error of a fit goes with the square of the distance.
   const float reach =
       std::min(reach_of_error * std::sqrt(float(options_.error)), most_reach) * distance;
   f.is_alone = beside_[r] != 0 || matte.is_one_sided || gloss.is_one_sided;

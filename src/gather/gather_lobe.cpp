@@ -11,12 +11,12 @@ namespace troffer {
 
 namespace {
 
-// Fewer than so many rays by the lobe are not worth their densities.
+// Least share of lobe rays that is worth evaluating both densities.
 constexpr float least_by_lobe = 0.03f;
 
-// Of rays, so that what both parts vary by, together, is least where it is evenly bright: of n
-// rays, the share a by the lobe, the matte part varies by matte² / (1 - a), gloss by about gloss² /
-// ((1 - a) / m + a), m the second moment of rays by their cosine.
+// Returns the share a of lobe rays that minimises the variance of both parts together under even
+// surroundings. With n rays, the matte part's variance is matte² / (1 - a) / n. That of gloss is
+// about gloss² / ((1 - a) / m + a) / n, with m the second moment of cosine-distributed rays.
 float best_share(float matte, float gloss, float m) {
   if (!(m > 1) || !(gloss > 0)) return 0;
   if (!(matte > 0)) return GatherLobe::most_by_lobe;
@@ -42,8 +42,9 @@ Rgb GatherLobe::share_of(const Vec3& direction) const {
   return wi.z > 0 ? evaluate(specular_, wo_, wi) * scale_ * (1 / wi.z) : Rgb{0};
 }
 
-// Of share_of(), over rays by their cosine and over the square of its mean, 1 / pi: pi times the
-// mean of share_of() over directions by what the lobe sends on, of which a few are looked at.
+// Second moment of share_of() over cosine-distributed rays, relative to the square of its mean,
+// 1/pi. It is pi times the mean of share_of() over directions drawn by the lobe, of which four are
+// evaluated.
 float GatherLobe::second_moment() const {
   constexpr std::array<Vec2, 4> places{
       {{0.125f, 0.625f}, {0.375f, 0.125f}, {0.625f, 0.875f}, {0.875f, 0.375f}}};

@@ -10,7 +10,8 @@ namespace troffer {
 
 namespace {
 
-// A pixel's place on a Z curve through its tile. Its last two bits: of four lattices, which one.
+// Returns a pixel's place on a Z curve through its tile. The last two bits say which of four
+// lattices it is on.
 uint32_t on_curve(uint32_t x, uint32_t y) {
   const auto spread = [](uint32_t v) {
     return (v & 1) | (v & 2) << 1 | (v & 4) << 2 | (v & 8) << 3;
@@ -22,7 +23,7 @@ uint32_t class_of(uint32_t place) {
   return place & 3;
 }
 
-// Sets the record's width; of one without gloss, or without rays, there is no lobe.
+// Sets the width of the record's gloss. Returns the lobe for its rays: empty without gloss or rays.
 GatherLobe make_lobe(const GatherWalks& walks, uint32_t rays, GatherRecord& r) {
   if (!r.place.is_there()) return {};
   const Bsdf specular = walks.scattering_at(r.place).specular;
@@ -162,7 +163,7 @@ bool GatherPass::run(const std::function<void(double)>& progress, Counters& coun
                      [&](int x, int y, uint32_t r) { return fitted(x, y, r); });
 }
 
-// Through the middle of a pixel; spread: by how much the next pixel's ray is farther away, per
+// Returns the ray through the middle of a pixel. spread: distance to the next pixel's ray, per
 // metre along it.
 Ray GatherPass::ray_of(int x, int y, float& spread) const {
   const float u = float(x) + 0.5f, v = float(y) + 0.5f;
@@ -171,7 +172,8 @@ Ray GatherPass::ray_of(int x, int y, float& spread) const {
   return ray;
 }
 
-// The matte surfaces that the tile's pixels see, with a gather at each, or at those on the lattice.
+// Finds the matte surfaces that the tile's pixels see, and gathers at each, or under thinning at
+// those of lattice pixels.
 void GatherPass::see(Tile& tile, Worker& w) const {
   GatherScratch& g = w.viewing;
   g.walks.clear();
@@ -193,7 +195,7 @@ void GatherPass::see(Tile& tile, Worker& w) const {
   tile.counts.assign(pixels, 0);
   std::vector<uint32_t> places;
   for (const GatherArrival& a : g.arrivals) {
-    if (a.walk.scatterings > 0) continue;  // seen in gloss: its cell does
+    if (a.walk.scatterings > 0) continue;  // seen in gloss: viewing rays read its cell
     GatherRecord& r = tile.records.emplace_back();
     r.hit = a.hit;
     r.matte.weight = luminance(a.walk.throughput) * inv_pi_f;
@@ -209,7 +211,7 @@ void GatherPass::see(Tile& tile, Worker& w) const {
   if (is_thinned_)
     for (size_t r = 0; r < counts.size(); ++r)
       if (class_of(places[r]) != 0) counts[r] = 0;
-  constexpr size_t rays_for_sight = 4;  // of as many as this, one
+  constexpr size_t rays_for_sight = 4;  // gather rays per visibility test
   std::vector<CellHit> from;
   size_t rays = 0;
   for (size_t r = 0; r < counts.size(); ++r) {
@@ -222,7 +224,8 @@ void GatherPass::see(Tile& tile, Worker& w) const {
   tally.tell(tile.sight);
 }
 
-// places: of each record on the tile's curve, and above that which of its pixel's it is.
+// places: of each record, its pixel on the tile's curve (8 bits) and its number within the pixel
+// (above).
 void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<uint32_t>& counts,
                         const Tile& tile, const std::vector<uint32_t>& places, Rays which,
                         Worker& w, BrightTally* tally) const {
@@ -230,14 +233,15 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
   walks.clear();
   std::vector<uint32_t> owners;
   std::vector<Vec3> directions;
-  std::vector<float> shares;   // what their light counts below the coat
-  std::vector<float> weights;  // … and over drawn by its cosine
+  std::vector<float> shares;   // per ray: the coat's factor for its light
+  std::vector<float> weights;  // per ray: what it counts relative to a cosine-distributed one
   std::vector<GatherLobe> lobes;
   std::vector<GatherAim> aims;
   const bool is_further = which == Rays::further;
   for (uint32_t r = 0; r < records.size(); ++r) {
     const GatherLobe& lobe = lobes.emplace_back(make_lobe(cells_.walks(), counts[r], records[r]));
-    // Each lattice has a sequence of its own, that is even where only the first is used.
+    // Each lattice has its own sequence, which is stratified even where only the first lattice is
+    // used.
     const uint32_t lattice = is_thinned_ ? class_of(places[r]) : 0,
                    place = (places[r] & 255) >> (is_thinned_ ? 2 : 0);
     const Bsdf coat = cells_.walks().coat_at(records[r].hit);
@@ -274,7 +278,7 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
   }
 }
 
-// Records of all tiles, by pixels.
+// Joins the records of all tiles, pixel by pixel.
 void GatherPass::join(std::vector<Tile>& tiles) {
   const PixelWindow& w = out_.window_;
   out_.first_.assign(size_t(w.width()) * size_t(w.height()) + 1, 0);

@@ -1,6 +1,8 @@
-// How records are made (gather_records.h): gathers, further rays, fits; each over all the picture
-// before the next. Where pixels lie close together for how light changes, every second one of every
-// second row has a record, and those between have none (gather_thinning.cpp).
+// Makes the gather records of a picture (gather_records.h), for GatherRecords::make(). The steps
+// are first gathers, thinning, further rays and fits, each over the whole picture before the next.
+// Tiles are shared by threads and processes; the result does not depend on either. Where pixels are
+// closer together than light changes, every second pixel of every second row has a record
+// (gather_thinning.cpp).
 #pragma once
 
 #include <vector>
@@ -13,9 +15,9 @@ namespace troffer {
 class GatherPass {
  public:
   static constexpr int most_pixels = 16;                      // radius of a fit
-  static constexpr int usual_pixels = 5;                      // … of what is usual around it
+  static constexpr int usual_pixels = 5;                      // radius of usual_rays()
   static constexpr uint32_t first_rays = 8, most_rays = 512;  // of a record
-  // Radii of fits in harmonic mean distances: within it light is nearly linear.
+  // Radius within which light is nearly linear, in harmonic mean distances.
   static constexpr float near_radius = 0.06f;
 
   GatherPass(const Cells& cells, const PictureView& view, const GatherOptions& options,
@@ -24,11 +26,11 @@ class GatherPass {
 
  private:
   struct Tile {
-    PixelWindow pixels;                 // within the window
-    int x = 0, y = 0;                   // its first pixel in the picture's own tiling
-    std::vector<GatherRecord> records;  // by pixels, row by row; until they are joined
-    std::vector<uint16_t> counts;       // of each pixel
-    BrightSight sight;                  // from its surfaces
+    PixelWindow pixels;  // of the tile, within the window
+    int x = 0, y = 0;    // first pixel of the tile in the tiling of the whole picture
+    std::vector<GatherRecord> records;  // pixel by pixel, row by row; empty after join()
+    std::vector<uint16_t> counts;       // records of each pixel
+    BrightSight sight;                  // lit regions as seen from the tile's surfaces
   };
   struct Worker {
     Worker() { viewing.is_view = true; }
@@ -36,23 +38,24 @@ class GatherPass {
     CellsScratch cells;
     Counters counters;
   };
-  // Of a record's two sums, one.
+  // One of a record's two sums: irradiance or gloss.
   using Part = GatherSums GatherRecord::*;
-  // What is known of a record's surroundings.
+  // Means over the records around one.
   struct Surroundings {
-    float nearness = 0;  // mean of 1 / distance
-    float variance = 0;  // of one gather of 16 rays, by the spread of its rays
-    float records = 0;   // of which this is the mean
+    float nearness = 0;  // mean of 1 / distance, 1/m
+    float variance = 0;  // of a gather of 16 rays, by the spread of rays
+    float records = 0;   // number of records averaged
   };
-  // Of one of a record's sums.
+  // Fit of one sum.
   struct Fitted {
     Rgb value;
+    // Estimated error of the luminance of `value`.
     float error = 0;
-    bool is_one_sided = false;  // a mean of neighbours that lie to one side
+    bool is_one_sided = false;  // mean of neighbours that lie to one side
   };
-  // Of the records around one: which are looked at.
+  // Choice of the records around one that are read.
   enum class Asked : uint8_t { all, other_half };
-  // Of a record's rays.
+  // Choice of the rays of a record that are gathered.
   enum class Rays : uint8_t { first, further };
 
   bool has_close_pixels(Worker& w) const;
@@ -80,7 +83,7 @@ class GatherPass {
   float own_rays(int x, int y, uint32_t r, Part part) const;
   FittedRecord fitted(int x, int y, uint32_t r) const;
   void gather_wanted(const Tile& tile, Rays which, Worker& w);
-  // work: all but how many tiles and threads there are.
+  // work: complete except for the numbers of tiles and threads.
   bool over_tiles(std::vector<Tile>& tiles, SharedWork work, Counters& counters);
   bool see_all(std::vector<Tile>& tiles, Counters& counters);
   bool gather_wanted(std::vector<Tile>& tiles, Rays which, Counters& counters);
@@ -96,14 +99,14 @@ class GatherPass {
   const StopFlag& stop_;
   GatherRecords& out_;
   std::vector<Worker> workers_;
-  bool is_thinned_ = false;       // pixels between others may have no record
-  std::vector<uint8_t> beside_;   // of each record: whether something else stands close by
-  std::vector<uint32_t> wanted_;  // rays of each record, from now on
-  // Of the places around each record, on average.
+  bool is_thinned_ = false;       // records between lattice pixels may be missing
+  std::vector<uint8_t> beside_;   // per record: is_beside()
+  std::vector<uint32_t> wanted_;  // per record: rays to be gathered next
+  // Per record: usual_rays().
   std::vector<float> usual_rays_;
 };
 
-// Visits (x, y, record).
+// Calls visit(x, y, record) for all records of a tile.
 template <class Visit>
 void GatherPass::records_of(const Tile& t, const Visit& visit) const {
   for (int y = t.pixels.y0; y < t.pixels.y1; ++y)
@@ -111,8 +114,7 @@ void GatherPass::records_of(const Tile& t, const Visit& visit) const {
       out_.of_pixel(x, y, [&](uint32_t r) { visit(x, y, r); });
 }
 
-// A value for every record, of(x, y, record), which looks at records around it, not at these
-// values.
+// Sets values[record] to of(x, y, record) for all records. `of` may read records, but not `values`.
 template <class T, class Of>
 bool GatherPass::for_records(std::vector<Tile>& tiles, Counters& counters, std::vector<T>& values,
                              const Of& of) {

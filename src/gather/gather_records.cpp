@@ -9,7 +9,7 @@ namespace troffer {
 
 bool is_one_surface(const CellHit& a, const CellHit& b, float spacing) {
   constexpr float least_cosine = 0.94f;  // 20°
-  constexpr float flatness = 0.03f;      // of a pixel
+  constexpr float flatness = 0.03f;      // in pixel spacings
   if (dot(a.normal, b.normal) < least_cosine) return false;
   const Vec3 d = b.position - a.position;
   const float off = std::max(std::abs(dot(d, a.horizon)), std::abs(dot(d, b.horizon)));
@@ -23,10 +23,12 @@ std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const Pic
                                                    const GatherOptions& options,
                                                    const std::function<void(double)>& progress,
                                                    const StopFlag& stop, Counters& counters) {
-  // A pixel looks at its neighbours' fits, these at gathers and at how many rays are usual around
-  // them, which others asked for; and who gathers at all is decided by those around.
+  // A pixel reads its neighbours' fits. These read gathers within most_pixels, whose further rays
+  // follow from gathers as far again, and usual_rays() around them. The rest is for lookups and
+  // thinning.
   constexpr int border = 2 * GatherPass::most_pixels + GatherPass::usual_pixels + 7;
-  // In whole tiles of the picture: what a tile's rays meet is the same for every window.
+  // The window grows to whole tiles of the picture, so that a tile's rays are the same for every
+  // window.
   constexpr int side = tile_side;
   const auto first = [&](int v) { return std::max(v - border, 0) / side * side; };
   const auto last = [&](int v) { return (v + border + side - 1) / side * side; };
@@ -72,10 +74,11 @@ bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, uint32_t glo
         const GatherRecord& record = records_[r];
         if (gloss != GlossPlace::no_material && gloss != record.place.material) return;
         const float d2 = length_squared(record.hit.position - hit.position);
-        // As far as pixels are apart where one looks along a surface, and no farther.
+        // Neighbouring hits are farther apart than the spacing where one looks along a surface, up
+        // to this factor.
         if (d2 > sqr(16 * record.spacing) || !is_one_surface(record.hit, hit, record.spacing))
           return;
-        // The own pixel's, but for where it goes over into the next one's.
+        // The pixel's own record dominates, except near the border to the next pixel.
         const float w = 1 / sqr(d2 / sqr(record.spacing) + 0.03f);
         if (w > nearest) {
           nearest = w;

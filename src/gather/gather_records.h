@@ -1,9 +1,9 @@
-// Irradiance gathered for a picture, before it is made: one ray through the middle of every pixel,
-// to the matte surfaces that it sees, straight, in mirrors and through glass; 8 gather rays from
-// each, as many more as the asked error needs, and a linear fit over what neighbours gathered that
-// lie on the same surface. Viewing rays look the result up (docs/cells.md).
+// Irradiance gathered for a picture before its viewing rays are shaded. One ray through the middle
+// of every pixel finds the matte surfaces that it sees: directly, in mirrors and through glass.
+// Each gets 8 gather rays, as many more as the asked error needs, and a linear fit over neighbours
+// on the same surface. Viewing rays look up the result (CellsIndirect; docs/cells.md).
 //
-// What a pixel gets depends on the pixels around it, not on tiles, threads or the window.
+// The result of a pixel depends on the pixels around it, not on tiles, threads or the window.
 #pragma once
 
 #include <array>
@@ -28,50 +28,51 @@ struct PixelWindow {
 
 // The picture for which light is gathered.
 struct PictureView {
-  PixelWindow image, window;                 // the whole picture, and what is made of it
-  std::function<Ray(float x, float y)> ray;  // through a point of the picture
+  PixelWindow image, window;                 // the whole picture, and the part to be made
+  std::function<Ray(float x, float y)> ray;  // ray through a point of the picture, in pixels
 };
 
 struct GatherOptions {
-  double error = 0.01;  // of a pixel's light
+  double error = 0.01;  // asked for a pixel's gathered light
   double typical = 0;   // luminance of indirect light in the picture
   int threads = 0;
   uint64_t seed = 0;
-  ProcessGroup* group = nullptr;  // others that make the same picture; may be null
+  ProcessGroup* group = nullptr;  // processes that make the same picture; may be null
 };
 
-// What rays bring, over them.
+// Sums over the rays of a gather.
 struct GatherSums {
   Rgb sum;
   float squares = 0;          // of luminance
   float bright_nearness = 0;  // luminance / distance
-  float half = 0;             // difference by halves of cells' rays (CellLight)
-  float weight = 0;           // luminance that a unit of it brings the pixel
+  float half = 0;             // half difference by the noise of cells (CellLight)
+  float weight = 0;           // luminance that one unit of this brings to the pixel
 };
 
-// Of one surface that a pixel sees.
+// The gather at one surface that a pixel sees.
 struct GatherRecord {
   CellHit hit;
   float spacing = 0;  // metres between neighbouring pixels, at right angles to the ray
   float rays = 0;
-  float nearness = 0;  // 1 / distance, over the rays
+  float nearness = 0;  // sum of 1 / distance over the rays, 1/m
   GatherSums matte;    // irradiance
-  // The mean radiance that wide gloss shows: what it sends to the eye, over what it would send if
-  // radiance was 1 all around.
+  // Wide gloss. Its light is a mean radiance: what gloss sends to the eye, over what it would send
+  // under a radiance of 1 all around.
   GlossPlace place;
   GatherSums gloss;
-  float width = 1;  // of the gloss
+  float width = 1;  // of the gloss (GGX)
 };
 
+// The fit at a record.
 struct FittedRecord {
   Rgb irradiance;
   float error = 0;  // standard error of its luminance
-  float reach = 0;  // metres over which both hold
+  float reach = 0;  // metres around the record within which both fits hold
   Rgb gloss;        // mean radiance that wide gloss shows, and its error
   float gloss_error = 0;
-  float rays = 0;  // wanted of a pixel that gathers for itself
-  // Something stands so close by, or neighbours are so few and to one side, that no fit holds where
-  // this record is the nearest.
+  float rays = 0;  // needed by a pixel that gathers for itself
+  // True if no fit holds where this record is the nearest: something stands close before the
+  // surface, or the few neighbours lie to one side.
   bool is_alone = false;
 };
 
@@ -79,26 +80,26 @@ class GatherRecords {
  public:
   static constexpr int tile_side = 16;  // pixels
 
-  // Null once `stop` is set.
+  // Gathers for a picture. Returns null once `stop` is set.
   static std::unique_ptr<GatherRecords> make(const Cells& cells, const PictureView& view,
                                              const GatherOptions& options,
                                              const std::function<void(double)>& progress,
                                              const StopFlag& stop, Counters& counters);
 
-  // Irradiance at a place that pixel (x, y) sees, and what its gloss shows if it is of that
-  // material (GlossPlace); false where the pixels around see another surface. is_rough: what is too
-  // far away to hold there is better than nothing.
+  // Looks up the fit at a place that pixel (x, y) sees: irradiance, and what wide gloss of this
+  // material shows (GlossPlace; no_material: none). False if the pixels around see another surface,
+  // or if their fits do not hold there. is_rough: accepts fits beyond their reach.
   bool irradiance_at(int x, int y, const CellHit& hit, uint32_t gloss, bool is_rough,
                      FittedRecord& out) const;
-  // An aim, and the record for which it is; no_record: for a place that has none.
+  // An aim and its record; no_record: for a place without one.
   static constexpr uint32_t no_record = 0xffffffffu;
   struct KnownAim {
     GatherAim aim;
     uint32_t record = no_record;
   };
-  // How gather rays are drawn at a place that pixel (x, y) sees: as at a record of the pixel that
-  // is of that surface, the last of them, so that one aim serves many rays. `last` is the caller's
-  // memory, for these records alone.
+  // Returns the distribution of gather rays at a place that pixel (x, y) sees. It is that of the
+  // pixel's last record on the same surface, if there is one, so that one aim serves many rays.
+  // `last`: the caller's cache, for these records only.
   const GatherAim& aim_at(int x, int y, const CellHit& hit, const BrightPlaces& places,
                           KnownAim& last) const;
   size_t bytes() const {
@@ -110,7 +111,7 @@ class GatherRecords {
  private:
   friend class GatherPass;
   GatherRecords(const PixelWindow& window) : window_(window) {}
-  // Calls visit(record) for those of a pixel.
+  // Calls visit(record) for every record of a pixel.
   template <class Visit>
   void of_pixel(int x, int y, const Visit& visit) const {
     if (!window_.has(x, y)) return;
@@ -119,15 +120,15 @@ class GatherRecords {
   }
 
   PixelWindow window_;
-  std::vector<uint32_t> first_;  // record of each pixel; and the end
+  std::vector<uint32_t> first_;  // first record of each pixel, and the end
   std::vector<GatherRecord> records_;
   std::vector<FittedRecord> fitted_;
-  // What each tile sees of bright places, tiles row by row.
+  // Per tile, row by row: visibility of each lit region, and BrightSight::rest.
   std::vector<float> visible_, rest_;
 };
 
-// Whether two places lie on one surface, so that irradiance goes from one to the other without a
-// jump; spacing: of pixels there, metres.
+// True if two places lie on one surface, so that irradiance has no jump between them. spacing:
+// metres between pixels there.
 bool is_one_surface(const CellHit& a, const CellHit& b, float spacing);
 
 }  // namespace troffer

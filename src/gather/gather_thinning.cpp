@@ -1,4 +1,5 @@
-// Fewer records where pixels lie close together for how light changes: large pictures of rooms.
+// Leaves out records in large pictures of rooms, where pixels are closer together than light
+// changes.
 #include "gather/gather_pass.h"
 
 #include <algorithm>
@@ -9,12 +10,14 @@ namespace troffer {
 
 namespace {
 
-// Pixels within the radius in which light is nearly linear, for those between others to go without.
+// Pixels within the radius in which light is nearly linear: with this many, pixels off the lattice
+// need no record.
 constexpr float least_radius = 6;
 
 }  // namespace
 
-// Whether most of the whole picture's pixels are so close. Never of small ones: nothing is won.
+// True if most pixels of the whole picture are so close. False for small pictures, which gain
+// nothing.
 bool GatherPass::has_close_pixels(Worker& w) const {
   constexpr int along = 24, rays = 4;
   constexpr int64_t least_pixels = 40'000;
@@ -61,8 +64,8 @@ bool GatherPass::has_close_pixels(Worker& w) const {
   return 2 * close > spacings.size();
 }
 
-// Whether what the lattice's pixels around have gathered says all about this one: all of them see
-// the same surface, and light is nearly linear from one to the next.
+// True if the records of lattice pixels around say all about this one: all see the same surface,
+// and light is nearly linear between them.
 bool GatherPass::is_spared(int x, int y, uint32_t r) const {
   const GatherRecord& at = out_.records_[r];
   if (is_on_lattice(x, y) || beside_[r] != 0) return false;
@@ -85,7 +88,7 @@ bool GatherPass::is_spared(int x, int y, uint32_t r) const {
          (!at.place.is_there() || is_linear(&GatherRecord::gloss));
 }
 
-// Leaves out those pixels' records, and gathers at the others that have not yet.
+// Leaves out such records, and gathers first rays at remaining records without any.
 bool GatherPass::thin(std::vector<Tile>& tiles, Counters& counters) {
   std::vector<uint8_t> is_left_out(out_.records_.size());
   if (!for_records(tiles, counters, is_left_out,

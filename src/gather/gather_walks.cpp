@@ -13,16 +13,16 @@ namespace troffer {
 
 namespace {
 
-// A walk's note about where it comes from: what shines on a matte surface is not for it to say, nor
-// what images shine on it.
+// Note of walks that come from a matte surface: they count neither direct light nor light of mirror
+// images.
 constexpr uint32_t from_matte = MirrorImages::from_matte;
 
-// How often a light is drawn for gloss that a ray meets, and how often the ray goes on: where less
-// is carried than these, in proportion to it, and then as much as these. What the gloss of a
-// varnish or of plastics brings is a twentieth of what its surface does, and need not be known as
-// well. Less for narrow gloss, of which few rays bring most. Measured: docs/cells.md.
+// Thresholds of Russian roulette at gloss that a ray meets. Below them a light is sampled, or the
+// ray continued, with a probability in proportion to the light carried. The gloss of varnish or
+// plastics brings a twentieth of what the surface does, and may be noisier. Few rays of narrow
+// gloss bring most of its light, so it has lower thresholds. Measured: docs/cells.md.
 constexpr float least_of_light = 0.25f, least_of_ray = 0.5f, least_of_narrow_ray = 0.1f;
-constexpr float least_by_width = 8;  // times alpha squared
+constexpr float least_by_width = 8;  // threshold over alpha squared
 
 struct ChancesOfGloss {
   float of_light = 1, of_ray = 1;
@@ -60,7 +60,7 @@ void set_out(const CellHit& from, const Vec2& number, Walk& walk) {
 }
 
 void set_out(const CellHit& from, const Vec3& wi, Walk& walk) {
-  // Below the surface, where the shading normal leans: no light comes from there.
+  // Directions below the surface occur where the shading normal leans; no light comes from there.
   const bool is_above = dot(wi, from.horizon) > 0;
   if (!is_above) walk.throughput = Rgb{0};
   walk.ray = {};
@@ -71,8 +71,8 @@ void set_out(const CellHit& from, const Vec3& wi, Walk& walk) {
   walk.last_normal = from.horizon;
   walk.last_both_sides = false;
   walk.last_place = from_matte;
-  // Texels as they are, as paths see them: a mean over what the ray stands for would be one over
-  // other parts of an image, too, and over what no surface shows.
+  // Unfiltered texels, as in paths. A mean over the ray's footprint would include other parts of an
+  // image, and texels that no surface shows.
   walk.cone = {};
   ++walk.vertex;
   ++walk.scatterings;
@@ -134,7 +134,7 @@ void GatherWalks::see(const Walk& walk, Rgb radiance, float weight, GatherScratc
   s.light.direct[walk.index] += walk.throughput * radiance * weight;
 }
 
-// Whether light that a walk runs into is for it to tell of.
+// True if the walk has to count emission of this light.
 bool GatherWalks::counts(const Walk& walk, uint32_t light) const {
   if (walk.last_place == from_matte) return false;
   return !images_ || !images_->is_shown(walk.last_place, light);
@@ -148,7 +148,7 @@ void GatherWalks::note_step(const Walk& before, const Vertex& v, Walk& next) con
               : 0;
 }
 
-// First where all of them arrive, so that their textures are there when they are looked up.
+// Makes all vertices first, so that textures are prefetched before they are read.
 void GatherWalks::arrive_all(GatherScratch& s) const {
   const size_t n = s.walks.size();
   s.vertices.resize(std::max(n, s.vertices.size()));
@@ -220,11 +220,11 @@ void GatherWalks::arrive(const Walk& walk, const Hit& hit, const Vertex& v,
   a.length = walk.length + distance;
 }
 
-// By gloss: with a light drawn for it, or further along the ray that it sends on. Either only
-// sometimes, where it matters little.
+// Continues a walk by gloss: with a sampled light, and along the ray that gloss sends on. Where
+// gloss carries little, roulette does either only sometimes.
 void GatherWalks::go_on(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering,
                         float distance, GatherScratch& s) const {
-  // Panes and clear coats send on what albedo() does not tell of.
+  // Roulette needs albedo(), which does not cover panes and clear coats.
   const bool is_spread = scattering.has_rough && !s.is_view;
   const bool is_told = !scattering.specular.is_pane && !scattering.specular.clear.has_lobe();
   const auto light = [&](const Walk& lit, float going_on) {
@@ -249,14 +249,15 @@ void GatherWalks::go_on(const Walk& walk, const Vertex& v, const SurfaceScatteri
   const float number = spawning_number(walk);
   if (survives(next, chances.of_light, number)) light(next, chances.of_ray / chances.of_light);
   next.throughput = walk.throughput;
-  // From the other end: both come less often together than each by itself.
+  // The complementary number makes both happen together less often than independent ones would.
   if (!survives(next, chances.of_ray, 1 - number) || !sets_out(next)) return;
   next.pdf *= chances.of_ray / chances.of_light;
   note_step(walk, v, next);
   s.next.push_back(next);
 }
 
-// At the far side of a surface that light passes evenly; takes its part from bsdf.
+// Adds an arrival at the far side of a surface that transmits diffusely. Removes that part from
+// `bsdf`.
 void GatherWalks::arrive_beyond(const Walk& walk, const Vertex& v, Bsdf& bsdf, float distance,
                                 GatherScratch& s) const {
   GatherArrival& a = s.arrivals.emplace_back();
@@ -308,7 +309,7 @@ void GatherWalks::bounce(std::vector<GatherArrival>& arrivals, GatherScratch& s)
 
 void GatherWalks::light_up(const std::vector<GatherArrival>& arrivals, GatherScratch& s,
                            Counters& counters) const {
-  // in groups of as many vertices behind them
+  // In groups with the same number of vertices behind them.
   for (size_t first = 0, end = 0; first < arrivals.size(); first = end) {
     while (end < arrivals.size() && arrivals[end].walk.vertex == arrivals[first].walk.vertex) ++end;
     const auto group = std::span(arrivals).subspan(first, end - first);
@@ -318,7 +319,7 @@ void GatherWalks::light_up(const std::vector<GatherArrival>& arrivals, GatherScr
   }
 }
 
-// mirror: of the image whose tree it is; null: of none.
+// mirror: of the image whose lights `tree` has; null: the scene itself.
 void GatherWalks::light_up_by(const LightTreeDirect& tree, const FlatMirror* mirror,
                               std::span<const GatherArrival> arrivals, GatherScratch& s,
                               Counters& counters) const {

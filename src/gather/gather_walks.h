@@ -1,10 +1,10 @@
-// Rays that ask surfaces around for the light they reflect: what they see of matte surfaces, by way
-// of mirrors, glass and gloss too, and what light reaches them along the way.
+// Follows gather rays to the matte surfaces that they see, also by way of mirrors, glass and gloss,
+// and adds up light of sources along the way. Used for gathers, rows of cells and pilot rays.
 //
-// Emission that a ray runs into first is not counted: light straight from sources is somebody
-// else's, and so is that of lights whose image in the mirror that it meets first is one of
-// `images`. Behind other mirrors, glass or gloss it is, in competition with one sample of the light
-// tree at the gloss, as in path tracing; at wide gloss that sends on little, either only sometimes.
+// Emission that a ray meets first does not count, because direct light is computed elsewhere. The
+// same holds for lights that the first mirror shows, if it is among `images`. Emission behind other
+// mirrors, glass or gloss counts, in competition with one sample of the light tree at the gloss, as
+// in path tracing. Wide gloss that sends on little does either only sometimes (Russian roulette).
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@
 
 namespace troffer {
 
-// What a surface of wide gloss is, so that its scattering function can be made again.
+// Identifies wide gloss on a surface, so that its scattering function can be made again.
 struct GlossPlace {
   uint32_t material = no_material;  // no_material: there is no wide gloss
   bool is_front = true;
@@ -29,51 +29,57 @@ struct GlossPlace {
   bool is_there() const { return material != no_material; }
 };
 
-// A matte surface seen by a ray, or, of a view, one of wide gloss, or one that reflects nothing.
+// Arrival of a ray on a matte surface; in a view, also on wide gloss or on a surface that reflects
+// nothing.
 struct GatherArrival {
-  Walk walk;               // throughput: times the surface's reflectance towards the ray
-  CellHit hit;             // where
-  GlossPlace gloss;        // of a view
-  float gloss_weight = 0;  // luminance that the gloss brings, of the same radiance all around
-  float distance = 0;      // from where the ray last left a surface
-  float length = 0;        // … from where it set out
+  Walk walk;               // throughput includes the surface's reflectance towards the ray
+  CellHit hit;             // place of the arrival
+  GlossPlace gloss;        // in a view
+  float gloss_weight = 0;  // luminance that the gloss sends under radiance 1 all around
+  float distance = 0;      // metres from the surface that the ray left last
+  float length = 0;        // metres from where the ray set out
 };
 
 struct GatherScratch {
-  // Rays of a view end where gloss would spread them.
+  // True for rays of a view, which end where gloss would spread them.
   bool is_view = false;
-  // Rays of cells, whose rows are bounded: one that carries more than its share would be cut.
+  // True for rays of cells. Rows are bounded and would cut off heavy rays, so roulette at gloss
+  // ends fewer of them and adds less weight.
   bool is_of_rows = false;
   std::vector<Walk> walks, next;
-  std::vector<GatherArrival> arrivals;  // the result …
-  RadianceBatch light;                  // … and radiance from sources: direct + indirect
-  std::vector<float> black;             // how far each ray went to where all is swallowed; or 0
+  std::vector<GatherArrival> arrivals;  // result: arrivals
+  RadianceBatch light;                  // result: radiance from sources, direct + indirect
+  std::vector<float> black;  // result: metres that each ray went to a black surface; 0: none
   WalkScratch trace;
   std::vector<Vertex> vertices;  // of each walk that hit something
+  // Vertices at which lights are sampled.
   WaveHits rough;
   LightTreeDirectScratch tree;
 };
 
 class GatherWalks {
  public:
-  // images: those whose light is somebody else's to count; null: none.
+  // images: mirrors whose light somebody else counts; null: none.
   GatherWalks(const PreparedScene& scene, std::shared_ptr<const MirrorImages> images);
 
-  // Follows s.walks, whose indices are below `rays`, to the end.
+  // Follows s.walks, whose indices are below `rays`, until all have arrived or ended.
   void follow(size_t rays, Coherence coherence, GatherScratch& s, Counters& counters) const;
-  // Sends a walk on from a place, by cosine. Returns what light from there counts; so does its
-  // throughput, but for light from below the surface.
+  // Sends a walk on from a place, cosine-distributed. Returns the coat's factor for light from
+  // there, and multiplies the throughput by it. The throughput becomes 0 if the direction is below
+  // the surface.
   float leave(const CellHit& from, const Vec2& number, Walk& walk) const;
-  // One such ray of each arrival, in s.walks; the walks have left the arrivals' surfaces.
+  // Sends one such ray from each arrival, into s.walks. Changes the arrivals' walks, too.
   void bounce(std::vector<GatherArrival>& arrivals, GatherScratch& s) const;
+  // Makes the scattering function at a place again.
   SurfaceScattering scattering_at(const GlossPlace& place) const;
-  // What the coat at a place lets through (coat_share); all, where there is none.
+  // Returns a scattering function with the coat at a place (for coat_share()); without a coat, one
+  // that lets everything through.
   Bsdf coat_at(const CellHit& hit) const;
-  // A surface there that reflects all, or, of reflectance pi, shows its irradiance; seen from
-  // straight above, by way of the coat.
+  // Returns a white surface with the coat at a place, seen from straight above. Of reflectance pi,
+  // it shows the irradiance there.
   Bsdf white_at(const CellHit& hit, float reflectance) const;
-  // Light straight from sources at arrivals, as irradiance times the walks' throughput, over π, in
-  // `light`: one sample each, and one of each image.
+  // Samples direct light at arrivals, once each and once per mirror image. Adds irradiance ×
+  // throughput / π to s.light.
   void light_up(const std::vector<GatherArrival>& arrivals, GatherScratch& s,
                 Counters& counters) const;
 
@@ -94,26 +100,27 @@ class GatherWalks {
 
   const PreparedScene& scene_;
   LightTreeDirect tree_;
-  // … at arrivals: walks that go on from there do so by cosine, and count no light, under a coat
-  // neither.
+  // Samples lights at arrivals without competition: walks go on from there cosine-distributed and
+  // do not count emission, under a coat either.
   LightTreeDirect lit_;
   std::shared_ptr<const MirrorImages> images_;
   std::vector<LightTreeDirect> lit_images_;
 };
 
-// Where a ray has hit a surface, as cells want it.
+// Returns the place where a ray has hit a surface, as cells use it.
 CellHit cell_hit_of(const Vertex& v, const Bsdf& bsdf);
-// … and back, as a surface seen from straight above.
+// Returns the place as a vertex that is seen from straight above.
 Vertex vertex_of(const CellHit& hit);
 
-// Of arrivals side by side that one walk has split into where it met a surface that light passes
-// evenly, at either side of it, one is drawn, by what it carries, and stands for both: where walks
-// go on again and again they would become a tree.
+// Merges neighbouring arrivals that one walk split into at the two sides of a translucent surface
+// (transport/two_sides.h). One is drawn in proportion to its throughput and stands for both.
+// Otherwise a walk that goes on repeatedly would grow into a tree.
 void keep_one_of_each(std::vector<GatherArrival>& arrivals);
 
-// Sends a walk on from a place, by cosine …
+// Sends a walk on from a place, cosine-distributed.
 void set_out(const CellHit& from, const Vec2& number, Walk& walk);
-// … or in a given direction; its density is that by cosine all the same.
+// Sends a walk on in a given direction. Its density is set to that of the cosine distribution all
+// the same.
 void set_out(const CellHit& from, const Vec3& direction, Walk& walk);
 
 }  // namespace troffer

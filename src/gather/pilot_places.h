@@ -1,4 +1,4 @@
-// Where a picture's pilot, or a list of points, asks for light.
+// Finds the places at which a pilot asks for light. Used by cell_builder.cpp.
 #pragma once
 
 #include <vector>
@@ -8,15 +8,15 @@
 
 namespace troffer {
 
-// Some of the viewing rays' walks ended here.
+// A place that the pilot asks at: a point, or where the walk of a viewing ray ended.
 struct PilotPlace {
   CellHit hit;
   float weight = 0;
-  float distance = 0;     // of the last stretch
-  bool is_gloss = false;  // seen by way of gloss: its cell itself is asked
+  float distance = 0;     // metres of the last segment
+  bool is_gloss = false;  // seen by way of gloss: its cell is read directly
 };
 
-// Its points, and the matte surfaces that its viewing rays see.
+// Returns the pilot's points, and the matte surfaces that its viewing rays see.
 std::vector<PilotPlace> places_of(const CellPilot& pilot, const GatherWalks& walks,
                                   Counters& counters);
 

@@ -11,10 +11,10 @@ namespace troffer {
 namespace {
 
 constexpr double most_times = 64;
-// Memory.
+// Limit of rays of rows, for memory.
 constexpr double most_rays = 1 << 24;
 
-// Of one set.
+// Returns the rays of one set.
 std::span<const PointRay> rays_of(const PointsSeen& points, size_t set) {
   const size_t begin = set == 0 ? 0 : points.end[set - 1];
   return std::span(points.seen).subspan(begin, points.end[set] - begin);
@@ -26,8 +26,9 @@ NoiseDraws sum_of(std::span<const PointRay> seen, const std::vector<NoiseDraws>&
   return sum;
 }
 
-// The mean square of what a point is off by. By what one set of rays sees, times what the other
-// does: few rays that see one cell each are off by more than the point, which has many.
+// Mean square of the error of a point by the noise of cells: the product of what its two sets of
+// rays see. The square of one set would be too large, because it contains the noise of its own few
+// rays.
 double mean_square(const PointsSeen& points, size_t p, const std::vector<NoiseDraws>& off) {
   const NoiseDraws first = sum_of(rays_of(points, PointsSeen::sets * p), off),
                    second = sum_of(rays_of(points, PointsSeen::sets * p + 1), off);
@@ -36,11 +37,11 @@ double mean_square(const PointsSeen& points, size_t p, const std::vector<NoiseDr
   return sum / (sqr(double(points.rays)) * draws_of_noise);
 }
 
-// Of a point that gets light by way of cells.
+// Gather of a point that gets light by way of cells.
 struct PointGathers {
   size_t point;
-  double light;     // all of it
-  double variance;  // of what one ray brings
+  double light;     // of all kinds: luminance
+  double variance;  // of one gather ray
 };
 
 std::vector<PointGathers> gathers_of(const PointsSeen& points, const std::vector<float>& direct,
@@ -62,7 +63,7 @@ std::vector<PointGathers> gathers_of(const PointsSeen& points, const std::vector
   return lit;
 }
 
-// Of a variance: the mean of one over the squares of the point's light and of the list's mean.
+// Returns the weight of a variance: the mean of 1 / light² of the point and 1 / mean² of the list.
 double weight_of(const PointGathers& g, double mean) {
   return 0.5 / sqr(g.light) + 0.5 / sqr(mean);
 }
@@ -86,7 +87,7 @@ PointsNoise noise_at_points(const PointsSeen& points, const std::vector<float>& 
     deviations += std::sqrt(weight_of(g, mean) * g.variance) / double(lit.size());
   for (const PointGathers& g : lit) {
     const double weight = weight_of(g, mean);
-    // Neyman's allocation, as samples_wanted() has it (render/point_plan.h).
+    // Neyman's allocation, as in samples_wanted() (render/point_plan.h).
     const double wanted =
         how.error > 0 ? std::sqrt(weight * g.variance) * deviations / sqr(how.error) : 0;
     const double rays = std::max(std::min(wanted, how.most_rays), how.rays);

@@ -11,19 +11,19 @@ namespace troffer {
 namespace {
 
 // All measured: docs/cells.md.
-constexpr uint32_t rays_of_step = 8;  // further rays come in so many
-// A cell's first rays are each worth as much as this many of the pilot's, all bounces counted, for
-// `fine_error`; for others by this power of the error.
+constexpr uint32_t rays_of_step = 8;  // further rays come in steps of this many
+// Importance that is worth a first ray of a cell, in mean pilot gather rays with all bounces
+// counted, at `fine_error`. It goes with this power of the error.
 constexpr double pilots_of_ray = 0.1, worth_by_error = 1.5;
 constexpr double most_coarseness = 4;
-constexpr uint32_t most_rays_of_row = 4096;  // further ones
-constexpr double most_unresolved = 1e-5;     // of the light asked for, for an error of .01 or less
+constexpr uint32_t most_rays_of_row = 4096;  // further rays of a row
+constexpr double most_unresolved = 1e-5;  // share of the asked light, for an error of .01 or less
 constexpr uint32_t rays_of_refining_task = 16;
-constexpr double most_refined = 1 << 18;  // rays of one row
-constexpr double enough_of_wanted = 1.5;  // further rays that a cell has: no more then
-// By how many bounces importance is brought on where further rays are shared out, and where rows
-// seem to be complete; and at a look at which cells lack them: what one look leaves the next takes
-// up.
+constexpr double most_refined = 1 << 18;  // rays of a row
+constexpr double enough_of_wanted =
+    1.5;  // cells that want fewer than this times their rays get none
+// Bounces over which importance is propagated: to share out further rays and to check that rows are
+// complete, and at each look for cells without a row. What one look leaves, the next one takes up.
 constexpr int bounces_of_importance = 24, bounces_of_look = 6;
 
 }  // namespace
@@ -57,7 +57,7 @@ CellTask RowPlan::task_of(uint32_t cell, uint32_t first, uint32_t count) const {
           first / rays_of_step % 2 == 1};
 }
 
-// Cells without a row, the most important first, but for those that hardly matter.
+// Returns the cells without a row, the most important first, except for those that hardly matter.
 std::vector<uint32_t> RowPlan::cells_to_resolve(int bounces) {
   look(bounces);
   const std::vector<float>& y = importance_;
@@ -81,8 +81,9 @@ std::vector<uint32_t> RowPlan::cells_to_resolve(int bounces) {
   return cells;
 }
 
-// By what a cell matters: where few rays share cells (in the open, between small things) 16 rays
-// from each, and from what they hit, would be a tree without end; one from each is a path.
+// Decided by the cell's importance. Few rays share cells in the open and between small things.
+// There, 16 rays from each cell and from all that they hit would be an endless tree; one ray each
+// is a path.
 uint32_t RowPlan::first_rays(uint32_t cell) const {
   if (cell >= importance_.size()) return 1;
   const double worth = double(importance_[cell]) / of_ray_;
@@ -91,8 +92,8 @@ uint32_t RowPlan::first_rays(uint32_t cell) const {
   return n;
 }
 
-// Of the first `count` rays of a cell those after the first `had`, either half of them from its own
-// half of the sequence.
+// Adds the first `count` rays of a cell, except for the first `had`. Each half of them comes from
+// its own half of the sequence.
 void RowPlan::add_first_tasks(uint32_t cell, uint32_t had, uint32_t count,
                               std::vector<CellTask>& tasks) const {
   const auto add = [&](uint32_t first, uint32_t end, uint32_t begin) {
@@ -102,7 +103,8 @@ void RowPlan::add_first_tasks(uint32_t cell, uint32_t had, uint32_t count,
   add(had / 2, count / 2, rays_of_step);
 }
 
-// A cell whose few rays met itself, say, would keep its light for ever, did it not get more.
+// Cells that turn out to matter get more rays. Otherwise a cell whose few rays met only itself, for
+// example, would keep its light for ever.
 std::vector<CellTask> RowPlan::first_tasks() {
   std::vector<CellTask> tasks;
   std::vector<uint32_t> cells = cells_to_resolve(bounces_of_look);

@@ -1,4 +1,5 @@
-// Which cells' rays are wanted next, by what cells matter to what is asked.
+// Decides which cells' rays are traced next, by the importance of cells for what is asked. Used by
+// cell_builder.cpp.
 #pragma once
 
 #include <cstdint>
@@ -9,48 +10,49 @@
 
 namespace troffer {
 
-// How many times what suits a fine error is asked for this one: 1 to 4.
+// Returns `error` over `fine`, from 1 to 4: how much coarser than for a fine error things may be.
 double coarseness(double error, double fine);
 
 class RowPlan {
  public:
-  static constexpr size_t pilot_rays = 1 << 17;  // about so many ask
+  static constexpr size_t pilot_rays = 1 << 17;  // of all pilot places together, about
   static constexpr uint32_t rays_of_row = 16;    // first ones of a cell that matters
-  static constexpr size_t most_cells = 1 << 21;  // with more nothing is asked for
+  static constexpr size_t most_cells = 1 << 21;  // with more, no rays are planned
   static constexpr double fine_error = 0.05;
 
-  // error: asked of the picture, or the points. The rows must outlive it.
+  // error: asked of the picture, or of the points. The rows must outlive it.
   RowPlan(const CellRows& rows, double error, uint64_t seed)
       : rows_(rows), error_(error), seed_(seed) {}
 
-  // That so much light of a cell is asked for. All of it before what follows.
+  // Adds light that is asked of a cell. Call it for all of them, then end_asking(), before what
+  // follows.
   void ask(uint32_t cell, float light);
   void end_asking();
-  // There are so many cells now.
+  // Sets the number of cells.
   void see(size_t cells) { asked_.resize(cells, 0); }
 
-  // First rays of cells that have none, and of those that have turned out to matter more than they
-  // have rays for; none where all that matters has them, or cells are too many.
+  // Returns first rays of cells that have none, and of those that deserve at least twice as many as
+  // they have. Empty if all that matter have them, or if there are too many cells.
   std::vector<CellTask> first_tasks();
-  // Further rays of the cells that matter, in proportion to what is asked of them, less what they
-  // have had already: as many in all as the first ones, about. frozen: how many cells were kept
-  // from other views.
+  // Returns further rays of cells in proportion to their importance, less those that they already
+  // have: about as many in all as first rays. frozen: number of cells kept from other views.
   std::vector<CellTask> further_tasks(size_t frozen);
-  // Of cells that matter to points, until there are so many rays in all, in proportion to what is
-  // asked of them, or as many as they have. Halves of them have numbers of their own, so that what
-  // they differ by tells what their mean is off by: that of one well spread sequence is off by
-  // less, but nobody can say by how much.
+  // Returns rays of cells in proportion to their importance, so that all cells have about `rays` in
+  // all. The two halves of a cell's rays have sequences of their own, so their difference shows the
+  // error of the mean. Halves of one sequence would differ by more than their mean errs by, by an
+  // unknown factor.
   std::vector<CellTask> refining_tasks(double rays);
+  // Returns the number of first rays of a cell, 1 to rays_of_row.
   uint32_t first_rays(uint32_t cell) const;
 
   const std::vector<float>& asked() const { return asked_; }  // per cell
-  // Per cell, all bounces counted, as last looked at.
+  // Per cell, all bounces counted, at the last look.
   const std::vector<float>& importance() const { return importance_; }
-  // What of the importance was last of cells without a row.
+  // Share of importance at cells without a row, at the last look.
   double unresolved() const { return unresolved_; }
 
  private:
-  // How many first rays those have that matter.
+  // Returns the number of first rays of cells that matter.
   double rays_that_matter(size_t frozen) const;
   void look(int bounces);
   CellTask task_of(uint32_t cell, uint32_t first, uint32_t count) const;
@@ -61,7 +63,7 @@ class RowPlan {
   const CellRows& rows_;
   double error_;
   uint64_t seed_;
-  double of_ray_ = 0;  // importance that a cell's ray is worth
+  double of_ray_ = 0;  // importance that is worth one ray
   std::vector<float> asked_, importance_;
   double unresolved_ = 0;
 };

@@ -4,7 +4,7 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t rays_for_sight = 4;  // of as many as this, one
+constexpr size_t rays_for_sight = 4;  // gather rays per visibility test
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// How rays that gather light at sensors are aimed at bright places (bright_places.h). What is seen
-// of these is found out by rays as well, so that sensors which ask for few rays share it.
+// Guides gather rays of sensors to lit regions (bright_places.h), for CellsIndirect. The visibility
+// of regions is tested by rays, too, so sensors with few rays share the tests.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +15,11 @@ CellHit hit_of(const SensorBatch& sensors, size_t i);
 
 class SensorAims {
  public:
-  // Sensors of one stream that follow each other belong together: at one place, as where light is
-  // measured, or spread over a small patch, as where it is baked. Places and sensors must outlive
-  // what is asked of them.
+  // Starts a batch. Consecutive sensors of one stream belong together: at one place (measuring), or
+  // spread over a small patch (baking). Places and sensors must outlive the calls of at().
   void begin(const BrightPlaces& places, const SensorBatch& sensors);
-  // Of sensor i, which is not before the one that was asked for last. The same whatever was asked
-  // for in other batches.
+  // Returns the distribution of sensor i. Call it in ascending order of i. The result does not
+  // depend on other batches.
   const GatherAim& at(size_t i);
 
  private:
@@ -28,12 +27,12 @@ class SensorAims {
 
   const BrightPlaces* places_ = nullptr;
   const SensorBatch* sensors_ = nullptr;
-  size_t end_ = 0;  // of the sensors that aim_ is for
+  size_t end_ = 0;  // of the sensors that aim_ serves
   GatherAim aim_;
-  // That aim_ is for, if it is for one place.
+  // Place of aim_, if it is for one place.
   CellHit place_;
   bool is_for_place_ = false;
-  // What patches see, all of the batch together.
+  // Visibility from all patches of the batch together.
   BrightSight sight_;
   bool has_sight_ = false;
 };

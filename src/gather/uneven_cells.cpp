@@ -12,10 +12,10 @@ namespace {
 
 constexpr size_t tries = 9;  // along either middle line of a cell: a lamp may be a narrow strip
 constexpr size_t all_tries = 2 * tries;
-// How high something stands that counts, in widths of the cell: what is closer to the surface lets
-// hardly any light in below it, and hardly any ray looks there.
+// Heights of things above the surface that count, in widths of the cell. Below lower ones hardly
+// any light arrives, and hardly any ray looks there.
 constexpr float least_height = 0.125f, most_height = 0.5f;
-constexpr float lift = 0.1f;  // how high above the surface sight is tried, in widths
+constexpr float lift = 0.1f;  // height above the surface of sight tests, in widths
 
 bool is_partly_covered(const Tracer& tracer, const CellOutline& cell) {
   const Vec3 &corner = cell.corners[0], u = cell.corners[1] - corner, v = cell.corners[3] - corner;
@@ -30,8 +30,8 @@ bool is_partly_covered(const Tracer& tracer, const CellOutline& cell) {
   }
   std::array<Hit, all_tries> hits;
   tracer.closest(above, hits, Coherence::none, Meeting::no_panes);
-  // A covered place beside one that is not, and sees it: else they are on two surfaces, or the one
-  // is within a solid that stands on the other.
+  // A covered place counts if a free one beside it sees it. Otherwise the two lie on different
+  // surfaces, or the covered one is inside a solid that stands there.
   std::vector<Ray> between;
   const auto look = [&](size_t i, size_t j) {
     const size_t covered = hits[i].is_valid() ? i : j, free = covered == i ? j : i;

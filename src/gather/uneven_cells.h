@@ -1,4 +1,4 @@
-// Where light differs so much over a cell that its mean says too little.
+// Tells over which cells light differs so much that its mean says too little.
 #pragma once
 
 #include "cells/cell_map.h"
@@ -6,11 +6,11 @@
 
 namespace troffer {
 
-// By lamps nearby (is_unevenly_lit), or, of what the picture looks at, where something stands close
-// above a part of it and nothing above another: a lamp or a shelf before a wall, and the wall
-// beside it. Light falls off towards the dark over about as much as what stands there is high, and
-// some see the one part, others the other. The scene must outlive what is returned; any number of
-// threads may call it.
+// Returns the test for CellMap::halve_where(). A cell is uneven if nearby lamps light it unevenly
+// (is_unevenly_lit()). A cell that the picture looks at is also uneven if something stands close
+// above a part of it, such as a shelf before a wall. Light falls off there over about the height of
+// that thing, and some rays see the bright part, others the dark one. The scene must outlive the
+// test. Any number of threads may call it.
 CellMap::IsUneven uneven_cells(const PreparedScene& scene);
 
 }  // namespace troffer

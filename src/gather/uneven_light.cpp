@@ -12,24 +12,25 @@ namespace troffer {
 
 namespace {
 
-constexpr float reach = 3;            // how far away lights are looked for, in widths of the cell
-constexpr double most_spread = 0.5;   // of irradiance over a cell: standard deviation over mean
-constexpr size_t most_lights = 1024;  // more pieces are not looked at: smaller cells have fewer
-constexpr int per_side = 3;           // places along either side of a cell
+constexpr float reach = 3;           // distance to lights that are looked at, in widths of the cell
+constexpr double most_spread = 0.5;  // of irradiance over a cell: standard deviation over mean
+// With more pieces of lights nearby a cell counts as uneven; smaller cells have fewer.
+constexpr size_t most_lights = 1024;
+constexpr int per_side = 3;  // test places along either side of a cell
 constexpr size_t places = size_t(per_side) * per_side;
-constexpr uint32_t far_draws = 16;  // by which light from farther away is estimated
+constexpr uint32_t far_draws = 16;  // light samples that estimate light from farther away
 
 float distance_squared(const Box& b, const Vec3& x) {
   return length_squared(max(max(b.lower - x, x - b.upper), Vec3(0)));
 }
 
-// How wide it is where it is narrow, about: of a disk or sphere the radius.
+// Returns about the width of a piece of a light at its narrowest; of a disk or sphere the radius.
 float breadth(const LightPrimitive& p) {
   if (p.shape == PrimitiveShape::sphere) return p.radius;
   return p.radius > 0 ? p.area / (pi_f * p.radius) : 0;
 }
 
-// Luminance of what a piece of a light sends to x, as if nothing stood between them.
+// Returns the luminance of unoccluded irradiance from a piece of a light at x.
 double arriving(const LightPrimitive& p, const Vec3d& x, const Vec3d& n) {
   if (p.shape != PrimitiveShape::point)
     return irradiance(p, x, n) * double(luminance(p.mean_radiance));
@@ -39,8 +40,8 @@ double arriving(const LightPrimitive& p, const Vec3d& x, const Vec3d& n) {
                 : 0;
 }
 
-// About what comes from other lights than these, but those at infinity: much the same all over the
-// cell.
+// Estimates irradiance from lights that are not in `near`, except those at infinity. It is about
+// the same all over the cell.
 double arriving_from_far(const PreparedScene& scene, const std::vector<uint32_t>& near,
                          const Vec3& x, const Vec3& n) {
   double sum = 0;
@@ -54,7 +55,8 @@ double arriving_from_far(const PreparedScene& scene, const std::vector<uint32_t>
   return sum / far_draws;
 }
 
-// Where it is nearest to x: of polygons by their bounds, and in their plane.
+// Returns the point of a light nearest to x; for polygons the nearest one of their bounds and
+// plane.
 Vec3 nearest_point(const LightPrimitive& p, const Vec3& x) {
   if (p.vertex_count == 0) return p.centroid;
   const Vec3 inside = max(min(x, p.bounds.upper), p.bounds.lower), n(p.normal);
@@ -62,10 +64,10 @@ Vec3 nearest_point(const LightPrimitive& p, const Vec3& x) {
   return max(min(in_plane, p.bounds.upper), p.bounds.lower);
 }
 
-// What arrives at the places of a cell.
+// Irradiance at the test places of a cell.
 struct Arriving {
   std::array<double, places> all{}, strongest{};
-  std::array<Ray, places> towards;  // the strongest
+  std::array<Ray, places> towards;  // rays to the strongest light
 };
 
 Arriving arriving_at(const PreparedScene& scene, const std::vector<uint32_t>& lights,
@@ -104,7 +106,7 @@ bool is_unevenly_lit(const PreparedScene& scene, const CellOutline& cell) {
   std::vector<uint32_t> near;
   scene.light_tree.near(centre, distance, most_lights, near);
   if (near.size() == most_lights) return true;
-  // Light from what is broad differs little over a cell that is not.
+  // Light from a broad source differs little over a narrower cell.
   std::erase_if(near, [&](uint32_t i) {
     const LightPrimitive& p = scene.primitives[i];
     return !(distance_squared(p.bounds, centre) < sqr(distance)) || breadth(p) > distance;

@@ -1,4 +1,4 @@
-// Where light from lamps nearby differs so much over a cell that its mean says too little.
+// Tells over which cells light from nearby lamps differs so much that its mean says too little.
 #pragma once
 
 #include "cells/cell_map.h"
@@ -6,11 +6,11 @@
 
 namespace troffer {
 
-// By the irradiance, at nine places of the cell, from lights no farther away than a few times its
-// width, but for broad ones, and at its middle from all others, as if nothing hid them: uneven
-// where its standard deviation is more than half its mean. The strongest light of a place counts
-// only where it is seen from there, for in a cove or behind a valance a cell has parts in light and
-// parts in shadow that other surfaces see from different sides.
+// True if the standard deviation of irradiance over nine places of the cell exceeds half its mean.
+// Lights within a few widths of the cell count at each place, except broad ones; all others count
+// at the middle, as if nothing hid them. The strongest light of a place counts only if it is
+// visible. In a cove or behind a valance, a cell has lit and shaded parts, which other surfaces see
+// from different sides.
 bool is_unevenly_lit(const PreparedScene& scene, const CellOutline& cell);
 
 }  // namespace troffer

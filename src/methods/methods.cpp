@@ -24,8 +24,8 @@ namespace troffer {
 
 namespace {
 
-// Light at cells, and at what gloss shows: certified as at first surfaces, but for an error that
-// their number makes small, or what carries it.
+// Allowed error of direct light beyond the first surface: at cells and at what gloss shows. At
+// least 0.1, because many cells average out and gloss carries only a part of the light.
 double error_beyond(const MethodInput& in) {
   constexpr double least_error = 0.1;
   return std::max(in.settings.error, least_error);
@@ -37,8 +37,9 @@ CertifiedSettings settings_beyond(const MethodInput& in) {
   return s;
 }
 
-// … at the first viewing rays of a pixel: where a hit takes more rays than so many draws, which err
-// by less than such a picture may, they take its place.
+// Settings of direct light at the first viewing rays of a pixel. In coarse pictures a hit gets
+// `draws` light samples if certificates would cost it more rays. Their noise is below the allowed
+// error there.
 CertifiedSettings settings_of_first(const MethodInput& in) {
   constexpr double coarse = 0.2;
   constexpr int draws = 32;
@@ -49,27 +50,30 @@ CertifiedSettings settings_of_first(const MethodInput& in) {
   return s;
 }
 
-// In pictures by draws where certificates take more, by few for errors from `coarse` on. (Points
-// that are measured share cells, and would err by one and the same noise of theirs.)
+// Settings of direct light beyond the first surface. In pictures, light samples replace
+// certificates where those cost more, and from error `coarse` on fewer samples do. Measuring points
+// keep certificates: they share cells, so all of them would have the same noise.
 CertifiedSettings drawn_beyond(const MethodInput& in, double coarse) {
-  constexpr int draws = 16, few_draws = 8;  // powers of two: stratified best
+  constexpr int draws = 16, few_draws = 8;  // powers of two stratify best
   CertifiedSettings s = settings_beyond(in);
   if (in.cells->view != nullptr) s.draws = in.settings.error >= coarse ? few_draws : draws;
   return s;
 }
-// … at further viewing rays of a pixel, each of which is a small part of it, and at what gloss
-// shows of all of them.
+// Settings at the further viewing rays of a pixel, each of which is a small part of it, and at what
+// gloss shows along any viewing ray.
 CertifiedSettings settings_of_further(const MethodInput& in) {
   CertifiedSettings s = drawn_beyond(in, 0.1);
   s.matte_times = 2;
   return s;
 }
-// … at cells, which have eight hits or more each.
+// Settings at cells. A cell averages eight or more hits, so few samples suffice from a smaller
+// error on.
 CertifiedSettings settings_of_cells(const MethodInput& in) {
   return drawn_beyond(in, 0.02);
 }
 
-// By cells, a picture errs by half of what is asked of it, or less; so it should by paths.
+// Allowed error of a picture by paths. Pictures by cells reach about half of the asked error, so
+// paths also have to do better than asked.
 double error_by_paths(double asked) {
   return 0.75 * asked;
 }
@@ -78,8 +82,8 @@ int most_by_paths(const MethodSettings& s) {
   return s.most_viewing_rays > 0 ? s.most_viewing_rays : most;
 }
 
-// What neighbours share errs alike in many pixels: it is seen as stains where as much noise of
-// single pixels is not. So light that is gathered errs by less than is asked, down to 1 %.
+// Allowed error of gathered light, stricter than the asked error, down to 1 %. Pixels that share a
+// fit err alike, which is visible as stains where the same noise of single pixels is not.
 double error_of_gather(double asked) {
   constexpr double as_asked = 0.01;
   return std::sqrt(asked * std::min(asked, as_asked));
@@ -121,11 +125,12 @@ GatheredCells make_gathered_cells(const MethodInput& in, const DirectLight& dire
   return made;
 }
 
-// Lights in mirrors, for all of them.
+// One stage of direct light and its settings.
 struct Stage {
   std::unique_ptr<DirectLight>& direct;
   CertifiedSettings settings;
 };
+// Adds lights seen in flat mirrors to all given stages, which share the images.
 void add_images(const MethodInput& in, std::initializer_list<Stage> stages) {
   const std::shared_ptr<const MirrorImages> images = MirrorImages::make(in.scene);
   if (!images) return;
@@ -137,7 +142,7 @@ void add_images(const MethodInput& in, std::initializer_list<Stage> stages) {
       s.direct = std::make_unique<ImagedDirect>(std::move(s.direct), images, occluders, s.settings);
 }
 
-// Few draws of lights, and one look at cells.
+// Makes an integrator of the same light by few draws of lights and few gather rays.
 std::unique_ptr<Integrator> make_quick(const MethodInput& in,
                                        const std::shared_ptr<const Occluders>& occluders,
                                        const std::shared_ptr<const Cells>& cells,
@@ -152,8 +157,8 @@ std::unique_ptr<Integrator> make_quick(const MethodInput& in,
                                           std::make_unique<CellsIndirect>(cells, records));
 }
 
-// What may hide a light that has a certificate: asked for nothing else, and empty where there is
-// none.
+// Returns the occluders for certificates: those of the scene, or none if no light can have a
+// certificate.
 std::shared_ptr<const Occluders> occluders_for(const MethodInput& in) {
   const std::vector<Light>& lights = in.scene.scene.lights;
   const bool is_asked = std::any_of(lights.begin(), lights.end(), [](const Light& light) {
@@ -163,7 +168,8 @@ std::shared_ptr<const Occluders> occluders_for(const MethodInput& in) {
   return std::make_shared<const Occluders>(in.scene.scene, &in.scene.glass);
 }
 
-// What paths would take for the picture, where they may take the place of cells.
+// Returns the forecast for path tracing, or nothing where paths must not replace cells: indirect
+// light chosen explicitly, no picture, or cells kept in a store.
 std::optional<PathForecast> forecast(const MethodInput& in) {
   const CellInput& cells = *in.cells;
   if (in.settings.indirect != Indirect::automatic || cells.view == nullptr ||
@@ -172,7 +178,7 @@ std::optional<PathForecast> forecast(const MethodInput& in) {
   const int most = most_by_paths(in.settings);
   const PathForecast f = forecast_paths(in.scene, *cells.view, error_by_paths(in.settings.error),
                                         most, cells.seed, in.cells->counters);
-  // Where few rays are allowed, hardly any pixel may want more than that.
+  // Near the limit of viewing rays, many pixels would stop before they reach the asked error.
   if (4 * f.viewing_rays > most) return std::nullopt;
   return f;
 }
@@ -184,13 +190,14 @@ std::unique_ptr<Integrator> make_paths(const MethodInput& in, const PathForecast
                                               most_by_paths(in.settings))});
 }
 
-// Light straight from sources alone. A pixel's further viewing rays are many, and what they show is
-// what it errs by: each may err by more, and is drawn where certificates take more than that.
+// Direct light alone, with refinement. The error of a pixel comes from what its many further rays
+// hit, so each of them may err by more in its own light. They use light samples where certificates
+// cost more.
 std::unique_ptr<Integrator> make_refined_direct(const MethodInput& in,
                                                 const std::shared_ptr<const Occluders>& occluders,
                                                 std::unique_ptr<DirectLight> first) {
   constexpr double more = 3;
-  constexpr int few_draws = 8;  // a power of two: stratified best
+  constexpr int few_draws = 8;  // a power of two stratifies best
   CertifiedSettings s =
       certified_settings(std::min(more * in.settings.error, 1.0), in.scene.scene.lights.size());
   s.draws = few_draws;
@@ -208,7 +215,7 @@ std::unique_ptr<Integrator> make_path(const MethodInput& in) {
 }
 
 std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
-  // Where nothing shines, cells would look for light as long as they may.
+  // Without lights the search for cells would run to its limit.
   const bool keeps_cells = in.cells != nullptr && in.cells->store != nullptr;
   if (in.scene.scene.lights.empty() && !keeps_cells) return make_path(in);
   std::optional<PathForecast> paths;
@@ -252,7 +259,7 @@ std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
   return std::make_unique<WaveIntegrator>(in.scene, std::move(direct), nullptr);
 }
 
-// The trees sample selected patches as they do lights.
+// The bintrees sample selected patches like lights.
 std::unique_ptr<Integrator> make_kj92(const MethodInput& in) {
   TROFFER_CHECK(in.radiosity != nullptr);
   std::unique_ptr<IndirectLight> indirect;
@@ -268,7 +275,7 @@ std::unique_ptr<Integrator> make_fixed(const MethodInput& in) {
       in.scene, std::make_unique<FixedDirect>(in.scene, in.settings.shadow_rays), nullptr);
 }
 
-// Of many lights most are drawn.
+// With many lights most are sampled, not certified, so that their number stops mattering.
 double certified_rays(const MethodSettings& s, size_t lights) {
   constexpr size_t most = 256;
   return double(certified_settings(s.error, lights).shadow_rays) * double(std::min(lights, most));
@@ -285,7 +292,7 @@ double path_rays(const MethodSettings&, size_t) {
 
 }  // namespace
 
-// In the order of the constants of Method and Indirect.
+// Rows in the order of the constants of Method and Indirect.
 struct MethodTable {
   static const std::array<MethodRow, 4> methods;
   static const std::array<IndirectRow, 4> indirects;
@@ -298,9 +305,10 @@ struct MethodTable {
   }
 };
 
-// Stops are looked for between tiles: those of scenes with many sources are smaller.
+// Limit of rays per tile. Stop requests are checked between tiles, so scenes with many sources have
+// smaller tiles.
 constexpr double most_rays_of_tile = 1 << 22;
-// certified: few sources get rays.
+// The same for `certified`, where few sources get rays.
 constexpr double most_certified_rays_of_tile = 1 << 25;
 
 const std::array<MethodRow, 4> MethodTable::methods{{
@@ -309,7 +317,7 @@ const std::array<MethodRow, 4> MethodTable::methods{{
         .make = make_certified,
         .rays_per_sample = certified_rays,
         .usual_indirect = Indirect::cells,
-        .widest_tile = 8,  // clusters of hits should be small in space
+        .widest_tile = 8,  // keeps clusters of hits small in space
         .most_rays_per_tile = most_certified_rays_of_tile,
         .has_noise_of_batch = true,
         .wants_typical = true,
@@ -323,8 +331,8 @@ const std::array<MethodRow, 4> MethodTable::methods{{
         .rays_per_sample = kj92_rays,
         .usual_indirect = Indirect::radiosity,
         .always_needs_radiosity = true,
-        .is_same_in_crops = false,  // results are compared with published ones of the very crop
-        // A sample is all the rays that the bintrees want.
+        .is_same_in_crops = false,  // compared with published results of the same crop
+        // One sample contains all rays that the bintrees ask for.
         .usual_measuring_samples = 256,
     },
     {
@@ -333,7 +341,7 @@ const std::array<MethodRow, 4> MethodTable::methods{{
         .rays_per_sample = fixed_rays,
         .is_direct_only = true,
         .most_rays_per_tile = most_rays_of_tile,
-        .rays_of_measuring_sample = 16,  // a set of shadow rays to every source
+        .rays_of_measuring_sample = 16,  // one set of shadow rays to every source
     },
     {
         .name = "path",

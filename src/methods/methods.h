@@ -1,5 +1,5 @@
-// The methods that troffer knows, and what each is made of: the one table and the one factory
-// (methods.cpp).
+// The methods of computing light that troffer knows, and what each is made of: one table and one
+// factory (methods.cpp). Used by render/ and view/.
 //
 // A method is walk × direct light × indirect light (wave_integrator.h), or an integrator of its
 // own.
@@ -23,13 +23,14 @@ namespace troffer {
 struct MethodRow;
 struct IndirectRow;
 
-// A row of the table of methods. Those that code names are here; find() knows all.
+// Names a row of the table of methods. The constants are the methods that code refers to; find()
+// knows all by name.
 class Method {
  public:
   static const Method certified, kj92, fixed, path;
 
   static std::optional<Method> find(std::string_view name);
-  // All names, as a sentence lists them.
+  // Returns all names as an enumeration in a sentence: "a, b or c".
   static std::string names();
 
   const MethodRow& row() const;
@@ -42,7 +43,7 @@ class Method {
 };
 inline constexpr Method Method::certified{0}, Method::kj92{1}, Method::fixed{2}, Method::path{3};
 
-// How light that was reflected before is computed, likewise. automatic: as suits the method.
+// Names a way of computing reflected light. automatic: the method's usual way.
 class Indirect {
  public:
   static const Indirect automatic, none, radiosity, cells;
@@ -60,38 +61,38 @@ class Indirect {
 inline constexpr Indirect Indirect::automatic{0}, Indirect::none{1}, Indirect::radiosity{2},
     Indirect::cells{3};
 
-// What users may choose about a method; each takes what it knows.
+// Options of a method that users may set. Each method reads those that it knows.
 struct MethodSettings {
   Indirect indirect = Indirect::automatic;
-  int shadow_rays = 64;       // fixed: per source and viewing ray
-  double error = 0.01;        // certified: see certified_settings
-  int viewing_rays = 1;       // certified: of a pixel, or estimates of a measuring point
+  int shadow_rays = 64;       // fixed: rays per source and viewing ray
+  double error = 0.01;        // certified: asked error (certified_settings())
+  int viewing_rays = 1;       // certified: per pixel; at measuring points: estimates per point
   TreeSamplingOptions trees;  // kj92
-  // certified: of a pixel, all in all, where they are not left to the method; 0: they are
+  // certified: limit of viewing rays per pixel that the user set; 0: the method decides
   int most_viewing_rays = 0;
-  bool is_refined = false;  // certified: pixels of a picture get further ones where they want them
-  bool measures_by_paths = false;  // certified: at sensors, paths in place of cells
-  int depth = -1;                  // path: most bounces; -1 = unlimited
-  int threads = 0;                 // for what is built; 0 = all cores
+  bool is_refined = false;  // certified: pixels may get further viewing rays where they need them
+  bool measures_by_paths = false;  // certified: indirect light at sensors by paths instead of cells
+  int depth = -1;                  // path: most scatterings; -1: no limit
+  int threads = 0;                 // for preparation; 0: all cores
 
   bool is_direct_only() const { return indirect == Indirect::none; }
 };
 
-// What cells are made from, where a method takes them, and what is told of them.
+// Input for methods that use cells, and what they report about the cells.
 struct CellInput {
   CellPilot pilot;
-  const PictureView* view = nullptr;  // null: no picture is made
+  const PictureView* view = nullptr;  // null: there is no picture
   uint64_t seed = 0;
-  std::function<void(double)> progress;  // 0 to 1; may be empty
+  std::function<void(double)> progress;  // from 0 to 1; may be empty
   const StopFlag& stop;
   Counters counters;
   CellStatistics statistics;
-  CellStore* store = nullptr;     // make_cells
-  ProcessGroup* group = nullptr;  // others that make the same; may be null
-  // Without a view: where more are wanted, there is no integrator.
+  CellStore* store = nullptr;     // cells kept between runs (make_cells()); may be null
+  ProcessGroup* group = nullptr;  // processes that make the same cells together; may be null
+  // Without a view, limit of the number of cells: beyond it make_integrator() returns null.
   double most_cells = std::numeric_limits<double>::infinity();
-  // How points gather from them, where it is to points: then their rays look closely, too
-  // (CellMap::look_closely).
+  // Gathering at measuring points. If set, rays also resolve sub-cell features: they do not read
+  // cells there, but sample lights and go on (CellMap::look_closely).
   GatheringPoints points{};
   // Once set, preparation ends as soon as it can (CellBuilderOptions::enough). Null: never.
   const StopFlag* enough = nullptr;
@@ -101,7 +102,8 @@ struct CellInput {
   std::unique_ptr<Integrator> quick{};
 };
 
-// What a method is made from. radiosity, cells: null where there is none; radiosity is copied.
+// Input of make_integrator(). radiosity and cells are null where there are none. The method copies
+// radiosity.
 struct MethodInput {
   const PreparedScene& scene;
   const MethodSettings& settings;
@@ -112,32 +114,34 @@ struct MethodInput {
 struct MethodRow {
   std::string_view name;
   std::unique_ptr<Integrator> (*make)(const MethodInput&);
-  // Shadow rays, about and at most, that a viewing ray takes in a scene of so many lights.
+  // Returns the number of shadow rays that a viewing ray takes in a scene with this many lights:
+  // approximate, and an upper limit.
   double (*rays_per_sample)(const MethodSettings&, size_t lights);
 
-  // How the method computes indirect light, unless `none` is asked for.
+  // Way of computing indirect light, unless `none` is asked for.
   Indirect usual_indirect = Indirect::none;
-  // Computes no light that was reflected before.
+  // True if the method computes no reflected light.
   bool is_direct_only = false;
-  // Needs the radiosity preprocessing even where no indirect light is asked for.
+  // True if the method needs the radiosity preprocessing even without indirect light.
   bool always_needs_radiosity = false;
 
-  int widest_tile = 16;  // pixels; as long as a tile does not take more rays than
+  int widest_tile = 16;  // pixels; narrower where a tile would take more rays than
   double most_rays_per_tile = 1e300;
-  // The noise of a pixel, though not its mean, depends on what else is in its batch: it is the same
-  // in a crop only if batches are.
+  // True if the noise of a pixel, though not its mean, depends on what else is in its batch. A crop
+  // then has the same noise only if it is cut into the same batches.
   bool has_noise_of_batch = false;
-  // Errors are compared with what is usual in the picture where less light arrives.
+  // True if the errors of dark pixels are judged against the usual luminance of the picture.
   bool wants_typical = false;
-  // Pixels of a crop are to have the values that they have in the whole picture.
+  // True if the pixels of a crop must have the values that they have in the whole picture.
   bool is_same_in_crops = true;
-  int refinement = 1;                  // most viewing rays of a pixel, in --spp, by default
+  int refinement = 1;  // default limit of viewing rays per pixel, in --spp; 1: none are added
   int usual_measuring_samples = 4096;  // per measuring point
-  // … or as many as a quarter of MethodSettings::error wants.
+  // True if the number of samples of a point follows from a quarter of MethodSettings::error
+  // instead.
   bool measures_to_error = false;
-  int rays_of_measuring_sample = 1;  // one estimate stands for so many of these samples
-  // Light straight from sources, which errs by far less, takes part in every so many-th of them,
-  // where it is measured to an error; a power of two.
+  int rays_of_measuring_sample = 1;  // samples that one estimate counts as
+  // Direct light takes part in every n-th estimate when measuring to an error, because it varies
+  // much less than indirect light. A power of two.
   int measuring_samples_per_direct = 1;
 };
 
@@ -147,16 +151,17 @@ struct IndirectRow {
   bool needs_cells = false;
 };
 
-// How `method` computes indirect light: `none` if that is asked for, else its usual way.
+// Returns `none` if that is asked for, else the method's usual way.
 Indirect chosen_indirect(Method method, Indirect indirect);
-// The radiosity preprocessing is needed first.
+// True if the radiosity preprocessing must run first.
 bool needs_radiosity(Method method, Indirect indirect);
 
-// Cells are made with the method: it needs CellInput.
+// True if the method makes cells: it then needs CellInput.
 bool needs_cells(Method method, Indirect indirect);
 
-// Throws EnvironmentError if memory runs out. Null where CellInput::stop was set meanwhile, or by
-// CellInput::most_cells.
+// Makes the integrator, including cells and gathers if the method uses them. Returns null if
+// CellInput::stop was set meanwhile, or if more than CellInput::most_cells cells would be needed.
+// Throws EnvironmentError if memory runs out.
 std::unique_ptr<Integrator> make_integrator(Method method, const MethodInput& input);
 
 }  // namespace troffer

@@ -15,22 +15,23 @@ namespace troffer {
 
 namespace {
 
-// Russian roulette leaves the first bounces alone, and paths that still carry more than this share
-// of their light. Measured on kj92room: noise² × rays is 40 % less than with survival = throughput.
+// Russian roulette spares the first bounces, and paths that carry more than this share of their
+// light. Measured on kj92room: noise² × rays is 40 % less than with survival = throughput.
 constexpr uint32_t roulette_first_vertex = 2;
 constexpr float roulette_threshold = 0.25f;
-// Where surfaces absorb nothing, throughput alone would never end a path: from this vertex on some
-// 5 % end all the same.
+// Surfaces that absorb nothing would let a path go on for ever by its throughput alone. From this
+// vertex on, at least 5 % end at each vertex.
 constexpr uint32_t long_path = 32;
 constexpr float long_path_survival = 0.95f;
-// So many paths and what is known of their vertices fit a core's second cache.
+// Paths of one wave: with their vertices they fit into the second-level cache of a core.
 constexpr size_t most_at_a_time = 256;
 
-// Ends paths that carry little, and strengthens those that survive; false where it ends. By a
-// number of the vertex that the path has left, stratified over the samples of a pixel.
+// Ends paths that carry little and strengthens those that survive; false if the path ends. The
+// random number belongs to the vertex that the path has left and is stratified over a pixel's
+// samples.
 bool survives_roulette(Walk& walk) {
   if (walk.vertex < roulette_first_vertex) return true;
-  // The factor 1/eta² of radiance inside glass comes back when the path leaves it.
+  // Inside glass, radiance carries a factor 1/eta², which is undone when the path leaves.
   const float carried = max_component(walk.throughput) * walk.eta_squared;
   const float most = walk.vertex < long_path ? 1 : long_path_survival;
   const float survival = std::min(carried / roulette_threshold, most);
@@ -42,11 +43,11 @@ bool survives_roulette(Walk& walk) {
 
 }  // namespace
 
-// One wave of a batch: all walks have the same number of vertices behind them. Stages pass it from
-// array to array.
+// One wave of a batch: all walks have left the same number of vertices behind. Every stage compacts
+// the arrays.
 struct PathIntegrator::Scratch final : IntegratorScratch {
-  WaveHits wave;    // walks[i] stands at vertices[i]; without `hits`
-  WaveHits imaged;  // those that an image may shine on
+  WaveHits wave;    // walks[i] stands at vertices[i]; `hits` is unused
+  WaveHits imaged;  // vertices that a mirror image may light
   WalkScratch trace;
   LightTreeDirectScratch lights;
   ResampledDirectScratch few_lights;
@@ -104,7 +105,7 @@ void PathIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& s
   }
 }
 
-// True where only emission is still to be gathered.
+// True if only emission remains to be counted at the walk's next vertex.
 bool PathIntegrator::is_last(const Walk& walk) const {
   return (options_.depth >= 0 && bounces(walk) >= uint32_t(options_.depth)) ||
          (options_.is_direct_only && walk.scatterings > 0);
@@ -119,7 +120,7 @@ void PathIntegrator::follow(Scratch& s, Coherence first, RadianceBatch& out,
   }
 }
 
-// From hits to vertices; keeps the walks that go on from theirs.
+// Turns hits into vertices and keeps the walks that continue.
 void PathIntegrator::arrive(Scratch& s, RadianceBatch& out) const {
   std::vector<Walk>& walks = s.wave.walks;
   std::vector<Vertex>& vertices = s.wave.vertices;
@@ -150,13 +151,13 @@ void PathIntegrator::arrive(Scratch& s, RadianceBatch& out) const {
     walks[alive++] = walk;
   }
   for (size_t i = 0; i < alive; ++i) {
-    // Made in its place: it is too large to be made and moved there.
+    // Constructed in place: a Bsdf is too large to be made elsewhere and moved.
     static_assert(std::is_trivially_destructible_v<Bsdf>);
     new (&bsdfs[i]) Bsdf(bsdf_at(scene_, vertices[i]));
     if (walks[i].vertex == 0) record_first_hit(walks[i], vertices[i], bsdfs[i], out);
     if (has_two_sides(bsdfs[i])) choose_side(walks[i], vertices[i], bsdfs[i]);
   }
-  if (alive > 0 && is_last(walks[0])) alive = 0;  // seen, but not followed
+  if (alive > 0 && is_last(walks[0])) alive = 0;  // recorded as first hits, but not followed
   walks.resize(alive);
   vertices.resize(alive);
   bsdfs.resize(alive);
@@ -175,6 +176,7 @@ void PathIntegrator::shade(Scratch& s, RadianceBatch& out, Counters& counters) c
   step_on(s);
 }
 
+// Samples lights in mirror images, at matte vertices in front of each mirror.
 void PathIntegrator::add_images(Scratch& s, RadianceBatch& out, Counters& counters) const {
   for (size_t m = 0; m < lit_images_.size(); ++m) {
     const FlatMirror& mirror = options_.images->all()[m].mirror;
@@ -196,14 +198,14 @@ float PathIntegrator::weight_of(const Walk& walk, const Vertex& v) const {
   return few_lights_ ? few_lights_->weight_of(walk, v) : tree_.weight_of(walk, v);
 }
 
-// Emission that the path runs into, weighted against next-event estimation from the vertex before.
+// Adds emission that the path hits, weighted against next-event estimation from the vertex before.
 void PathIntegrator::add_emission(const Walk& walk, const Vertex& v, RadianceBatch& out) const {
   const Rgb radiance = emission_at(scene_, v);
   if (radiance.is_black()) return;
   add_seen(walk, uint32_t(v.surface.light), radiance, walk.pdf > 0 ? weight_of(walk, v) : 1, out);
 }
 
-// What lights at infinity show to a path that has left the scene.
+// Adds the radiance of lights at infinity, for a path that has left the scene.
 void PathIntegrator::add_miss(const Walk& walk, RadianceBatch& out) const {
   for (const uint32_t p : scene_.primitives.at_infinity())
     add_seen(walk, scene_.primitives[p].light,
@@ -214,17 +216,18 @@ void PathIntegrator::add_miss(const Walk& walk, RadianceBatch& out) const {
 
 void PathIntegrator::add_seen(const Walk& walk, uint32_t light, Rgb radiance, float weight,
                               RadianceBatch& out) const {
-  // Straight from the source: seen as it is, or scattered once with nothing in between.
+  // Light is direct if the source is seen as it is, or after one scattering with nothing in
+  // between.
   const bool is_direct = is_direct_at(walk) || (walk.scatterings == 1 && walk.pdf > 0);
   if (is_direct && options_.leaves_out_direct_at_sensors) return;
   if (options_.images && options_.images->is_shown(walk.last_place, light)) return;
   (is_direct ? out.direct : out.indirect)[walk.index] += walk.throughput * radiance * weight;
 }
 
-// False where the walk ends.
+// Chooses the walk's next ray at v and notes its mirror; false if the walk ends.
 bool PathIntegrator::step_from(Walk& walk, const Vertex& v, const Bsdf& bsdf,
                                const Vec2& direction) const {
-  // Only surfaces with several lobes ask for the third number.
+  // Only surfaces with several lobes need the third number.
   const float lobe = is_lambertian(bsdf, nullptr) ? 0 : lobe_number(walk);
   const uint32_t came_from = walk.last_place, panes = walk.panes, scatterings = walk.scatterings;
   if (!step(walk, v, bsdf, lobe, direction)) return false;
@@ -236,7 +239,7 @@ bool PathIntegrator::step_from(Walk& walk, const Vertex& v, const Bsdf& bsdf,
   return true;
 }
 
-// Sets out from every vertex; keeps the walks that do not end.
+// Sends a walk on from every vertex and keeps those that do not end.
 void PathIntegrator::step_on(Scratch& s) const {
   std::vector<Walk>& walks = s.wave.walks;
   const size_t n = walks.size();

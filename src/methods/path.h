@@ -1,7 +1,8 @@
-// Unidirectional path tracing: the reference for every other method.
-// Next-event estimation with one light chosen by a light tree, or picked of few that are all asked,
-// and sampled by solid angle, combined with BSDF sampling by the power heuristic; Russian roulette.
-// Unbiased but for the depth limit.
+// Unidirectional path tracing, the reference for every other method (`--method path`).
+// Next-event estimation chooses one light by a light tree, or resamples among few rectangular
+// lights (resampled_direct.h), and samples it by solid angle. It is combined with BSDF sampling by
+// the power heuristic [1]; Russian roulette ends paths. Unbiased except for the depth limit.
+// Forecasts and audits use it as well (path_forecast.h, paths_indirect.h).
 //
 // References: [1] Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, ch. 9.
 #pragma once
@@ -18,13 +19,14 @@
 namespace troffer {
 
 struct PathOptions {
-  int depth = -1;               // most scatterings (0 emission, 1 direct light); -1 = no limit
-  bool is_direct_only = false;  // only light that is scattered once, not counting mirrors and glass
+  int depth = -1;               // most scatterings (0: emission, 1: direct light); -1: no limit
+  bool is_direct_only = false;  // only light scattered once, not counting mirrors and glass
   PixelSampling sampling = {};
-  // What comes to a sensor straight from sources is not asked for, nor what these images show it of
-  // them.
+  // Leaves out light that reaches a sensor straight from sources, or by way of the mirrors of
+  // `images`.
   bool leaves_out_direct_at_sensors = false;
-  // What these show matte surfaces of lights is asked for like lights; null: paths find it.
+  // Mirrors in which matte surfaces sample lights as if these were seen directly. Null: only paths
+  // that happen to hit a light behind a mirror find it.
   std::shared_ptr<const MirrorImages> images = nullptr;
 };
 
@@ -64,8 +66,8 @@ class PathIntegrator final : public Integrator {
   const PreparedScene& scene_;
   PathOptions options_;
   LightTreeDirect tree_;
-  std::optional<ResampledDirect> few_lights_;  // in place of the tree
-  std::vector<LightTreeDirect> lit_images_;    // of options_.images
+  std::optional<ResampledDirect> few_lights_;  // replaces the tree where it is set
+  std::vector<LightTreeDirect> lit_images_;    // one for each of options_.images
 };
 
 }  // namespace troffer

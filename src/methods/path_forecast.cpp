@@ -16,25 +16,26 @@ namespace troffer {
 namespace {
 
 constexpr uint32_t pixels_looked_at = 1024;
-// Of each, two independent sets of as many paths, which are spread evenly within a set.
+// Sets per test pixel and paths per set. Sets are independent; the paths within one are stratified.
 constexpr uint32_t sets = 2, paths_of_set = 4;
-// About the least that cells take for a picture, in rays of paths, for each pixel, and for the rays
-// that look for cells: chosen low, from the times of a few scenes. For smaller errors pixels take
-// more; in coarse pictures what cells make errs by far less than it may.
+// Least cost of a picture by cells, in rays of paths: per pixel, and for finding cells. Measured:
+// the times of a few scenes, rounded down. A pixel costs more for errors below `coarse_error`. For
+// larger ones it costs no less, because cells then err by far less than they may.
 constexpr double rays_of_pixel = 80, coarse_error = 0.1, growth = 0.65, rays_of_search = 1.5e5;
 double least_of_pixel(double error) {
   return rays_of_pixel * std::pow(std::max(coarse_error / error, 1.0), growth);
 }
-// First rays of a pixel tell of its noise, and more than these few are needed for that.
+// Limits of the number of first rays of a pixel. They estimate its noise, for which fewer are too
+// few.
 constexpr int least_first = 8, most_first = 64;
-constexpr int tiles_across = 8;  // of the picture, and as many upwards
+constexpr int tiles_across = 8;  // test pixels are grouped by 8 × 8 parts of the picture
 
-// A pixel that is looked at, within the unit square that the picture stands for.
+// Returns the place of test pixel i in the unit square that stands for the picture.
 Vec2 place_looked_at(uint64_t stream, uint32_t i) {
   return SobolGroup(stream, purpose_camera, i).get2(0);
 }
 
-// Two sets of paths through each of some pixels, one after the other.
+// Returns the viewing rays of all test pixels: for each, one set of paths after the other.
 ViewingRays sets_of_rays(const PictureView& view, uint64_t stream) {
   ViewingRays rays;
   const auto width = float(view.image.width()), height = float(view.image.height());
@@ -56,7 +57,7 @@ std::string name_of_forecast_ray(const void*, size_t i) {
   return "path " + std::to_string(i) + " of a forecast";
 }
 
-// Luminances, as the paths bring them.
+// Luminance of each path; 0 where it is not finite.
 std::vector<double> luminances(const PreparedScene& scene, const ViewingRays& rays,
                                Counters& counters) {
   const PathIntegrator paths(scene, {});
@@ -73,15 +74,15 @@ std::vector<double> luminances(const PreparedScene& scene, const ViewingRays& ra
   return values;
 }
 
-// Means over the pixels that are looked at in one part of the picture.
+// Means over the test pixels in one part of the picture.
 struct Tile {
   double luminance = 0, pixels = 0;
   double variance = 0;         // of one path
   double variance_of_set = 0;  // of the mean of a set
 };
 
-// Pixels' own pairs do not tell their noise: where light comes by few of the paths, most pairs see
-// nothing at all, and would want no more.
+// Groups test pixels by part of the picture. A single pixel's pair does not show its noise: where
+// few paths bring light, most pairs see nothing and would ask for no more rays.
 std::vector<Tile> tiles_of(uint64_t stream, const std::vector<double>& values) {
   std::vector<Tile> tiles(size_t(tiles_across * tiles_across));
   for (uint32_t i = 0; i < pixels_looked_at; ++i) {
@@ -107,15 +108,16 @@ std::vector<Tile> tiles_of(uint64_t stream, const std::vector<double>& values) {
   return tiles;
 }
 
-// Luminance that is usual in the picture.
+// Returns the usual luminance of the picture (usual_luminance()).
 double typical_of(const std::vector<Tile>& tiles) {
   std::vector<double> luminances;
   for (const Tile& t : tiles) luminances.push_back(t.luminance);
   return usual_luminance(std::move(luminances));
 }
 
-// How much better than independent ones n paths of a pixel are: their mean has a variance of
-// n^-(1 + evenness). Extrapolated from a few, so that less is believed than they tell.
+// Returns the exponent that n stratified paths gain over independent ones: their mean has a
+// variance of n^-(1+evenness). Sets of four are few to extrapolate from, so only half of it is
+// believed.
 double evenness_of(const std::vector<Tile>& tiles, double error, double typical) {
   constexpr double believed = 0.5, most_evenness = 0.35;
   double independent = 0, even = 0;
@@ -129,7 +131,7 @@ double evenness_of(const std::vector<Tile>& tiles, double error, double typical)
                   most_evenness);
 }
 
-// Viewing rays that a pixel wants on average.
+// Returns the mean number of viewing rays that a pixel needs for the error.
 double rays_wanted(const std::vector<Tile>& tiles, double error, double typical, double evenness,
                    int most) {
   double wanted = 0, pixels = 0;
@@ -153,7 +155,7 @@ PathForecast forecast_paths(const PreparedScene& scene, const PictureView& view,
   counters += own;
   PathForecast f;
   const double typical = typical_of(tiles);
-  // Most of the picture may show nothing to so few paths.
+  // If so few paths see nothing in most of the picture, the forecast is infinite.
   f.viewing_rays = std::numeric_limits<double>::infinity();
   if (typical > 0) {
     f.evenness = evenness_of(tiles, error, typical);

@@ -1,8 +1,9 @@
-// What a picture would take by path tracing, from a look at a few thousand of its pixels; and
-// whether that is less than the default's own way, by cells, would take (docs/cells.md, "Paths").
+// Forecast of what a picture costs by path tracing, from a few thousand test paths. The default
+// method compares it with the least cost of a picture by cells (methods.cpp; docs/cells.md,
+// "Paths").
 //
-// Work is counted in rays, never in seconds: the same choice on every machine, for any number of
-// threads and for every crop of the picture.
+// Cost is counted in rays, never in seconds. The choice is therefore the same on every machine, for
+// any number of threads and for every crop of the picture.
 #pragma once
 
 #include <cstdint>
@@ -14,22 +15,23 @@
 namespace troffer {
 
 struct PathForecast {
-  double viewing_rays = 0;  // of a pixel, on average, as many as the error asked for wants
+  double viewing_rays = 0;  // mean per pixel for the asked error
   double rays = 0;          // of all kinds, for the whole picture
-  double evenness = 0;      // PixelSampling
-  // What else the picture would take that much for: cells' making, in rays. Negative: paths take
-  // less than a picture by cells does even if cells cost nothing.
+  double evenness = 0;      // of a pixel's paths (PixelSampling::evenness)
+  // Budget for making cells, in rays: `rays` less the least that a picture by cells needs besides.
+  // Negative: paths cost less even if cells are free.
   double rays_for_cells = 0;
 };
 
-// error: asked of a pixel (allowed_error()); most: viewing rays that a pixel may have.
+// Forecasts the cost of a picture. error: allowed in a pixel (allowed_error()). most: limit of
+// viewing rays per pixel. Adds the rays that it traces to `counters`.
 PathForecast forecast_paths(const PreparedScene& scene, const PictureView& view, double error,
                             int most, uint64_t seed, Counters& counters);
 
-// How paths would sample the pixels of such a picture.
+// Returns how the pixels of a picture by paths are to be sampled.
 PixelSampling sampling_by_paths(const PathForecast& forecast, double error, int most);
 
-// Making a cell takes as long as tracing so many rays of paths: at the least.
+// Least cost of making one cell, in rays of paths.
 constexpr double rays_of_cell = 60;
 
 }  // namespace troffer

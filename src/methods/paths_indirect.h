@@ -1,5 +1,6 @@
-// Light that was reflected before, at sensors, by path tracing (path.h): nothing is known
-// beforehand, and nothing is biased. For pictures there is PathIntegrator.
+// Indirect light at sensors by path tracing (path.h): unbiased, and without preparation. Used where
+// measuring points take paths instead of cells (MethodSettings::measures_by_paths). Pictures by
+// paths use PathIntegrator.
 #pragma once
 
 #include <memory>
@@ -12,16 +13,16 @@ namespace troffer {
 
 class PathsIndirect final : public IndirectLight {
  public:
-  // images: those whose light is somebody else's to count; null: none.
+  // images: mirrors whose light the direct light counts; null: none.
   PathsIndirect(const PreparedScene& scene, std::shared_ptr<const MirrorImages> images)
       : paths_(scene, {.leaves_out_direct_at_sensors = true, .images = std::move(images)}) {}
 
   std::unique_ptr<IndirectLightScratch> make_scratch() const override;
-  // Not to be called: for sensors alone.
+  // Must not be called: only sensors are served.
   void queue(WaveHits& wave, IndirectLightScratch& scratch, RadianceBatch& out,
              Counters& counters) const override;
   void flush(IndirectLightScratch& scratch, RadianceBatch& out, Counters& counters) const override;
-  // By a path per sample.
+  // Traces one path per sample.
   void gather(const SensorBatch& sensors, IndirectLightScratch& scratch, RadianceBatch& out,
               Counters& counters) const override;
 

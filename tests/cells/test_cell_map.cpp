@@ -16,7 +16,7 @@ CellHit on_floor(float x, float y) {
   return {{x, y, 0}, {0, 0, 1}, {0, 0, 1}, 1e-5f};
 }
 
-// A floor of 4 × 4 m; half of it behind a wall without thickness at x = 0.33.
+// A floor of 4 × 4 m. A wall without thickness at x = 0.33 parts it in two.
 Scene parted_floor() {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
@@ -38,7 +38,7 @@ TEST_CASE("hits in one voxel share a cell, those of another side, plane or dista
   CHECK(map.find(on_floor(0.3f, 0.2f), 5) == cell);
   CHECK(map.hits(cell).size() == 2);
   CHECK(map.find(on_floor(1.5f, 0.1f), 5) == no_cell);
-  CHECK(map.find(on_floor(0.1f, 0.1f), 1) == no_cell);  // from near: half cells
+  CHECK(map.find(on_floor(0.1f, 0.1f), 1) == no_cell);  // near hits have cells of half the size
   CellHit below = on_floor(0.1f, 0.1f);
   below.normal = below.horizon = {0, 0, -1};
   CHECK(map.find(below, 5) == no_cell);
@@ -64,13 +64,13 @@ TEST_CASE("what comes from far away comes from larger cells, the same to whoever
       const uint32_t cell = map.add(hit, sizes * size);
       CHECK(map.find(hit, sizes * size) == cell);
     }
-    // From near by, these are no help; else the finest.
+    // Cells for near rays do not serve rays from afar; otherwise the finest one is found.
     CHECK((map.find_from_afar(on_floor(0.5f, 0.5f)) == no_cell) == (sizes == 2.0f));
     cells.push_back(map.size() - before);
     before = map.size();
   }
   const auto about = [](double n) { return doctest::Approx(n).epsilon(0.06); };
-  CHECK(double(cells[1]) == about(8647));  // of 10 000 that many are met by 20 000 at random
+  CHECK(double(cells[1]) == about(8647));  // 20 000 random hits meet this many of 10 000
   CHECK(cells[0] > cells[1]);
   CHECK(cells[2] == 0);
   CHECK(double(cells[3]) == about(2601));
@@ -89,7 +89,7 @@ TEST_CASE("where light is uneven there are halves of cells, and halves of them, 
   add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
   const Tracer tracer(s);
   CellMap map(tracer, 1);
-  // As by a lamp at the origin: nothing wider than its distance from there.
+  // Halves cells as for a lamp at the origin: no cell is wider than its distance from there.
   map.halve_where([](const CellOutline& cell, bool) {
     const Vec3 d = (cell.corners[0] + cell.corners[2]) * 0.5f;
     CHECK(cell.normal == Vec3{0, 0, 1});
@@ -107,7 +107,7 @@ TEST_CASE("where light is uneven there are halves of cells, and halves of them, 
       CHECK(length(hit.position - Vec3{x, y, 0}) <=
             1.4143f * std::max(1 / 64.0f, std::min(1.0f, 2 * length(hit.position))));
   }
-  // Far away they are as wide as ever; at the lamp as narrow as they get.
+  // Far from the lamp cells are as wide as ever; next to it they are as narrow as they can be.
   const auto width = [&](float x) {
     const uint32_t cell = map.find(on_floor(x, 0.01f), 5);
     float end = x;
@@ -132,7 +132,7 @@ TEST_CASE("cells keep more of the hits that a picture asks for") {
   const uint32_t asked = map.find(on_floor(0.1f, 0.1f), 5);
   REQUIRE(map.hits(asked).size() == hits_of_asked_cell);
   CHECK(map.hits(asked)[7].position.y == 0.001f * 7.0f);
-  CHECK(map.hits(asked)[8].position.y == 0.001f * 9.0f);  // the next that was asked for
+  CHECK(map.hits(asked)[8].position.y == 0.001f * 9.0f);  // the next one that was asked for
   CHECK(map.hits(map.find(on_floor(1.1f, 0.1f), 5)).size() == hits_per_cell);
   const CellMap copy = map;
   CHECK(copy.hits(asked).size() == hits_of_asked_cell);
@@ -159,7 +159,7 @@ TEST_CASE("a wall parts the cells of the floor that it stands on, wherever it cr
     }
     CAPTURE(size);
     CHECK(shared == 0);
-    CHECK(map.size() < 60 / size);  // and not one for each hit
+    CHECK(map.size() < 60 / size);  // not one cell per hit
   }
 }
 
@@ -184,7 +184,8 @@ TEST_CASE("cells of slats are narrow, those of a floor and at its edge are not")
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
   add_quad(s, grey, {Vec3{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
-  // Slats of .03 m, 1 m above it, one above the other, and shelves of one cell and three.
+  // Slats of .03 m, 1 m above the floor, one above the other, and shelves as wide as one cell and
+  // as three.
   const auto add_shelf = [&](float width, float z) {
     add_quad(s, grey, {Vec3{0, -1, z}, {width, -1, z}, {width, 1, z}, {0, 1, z}});
   };
@@ -206,10 +207,10 @@ TEST_CASE("cells of slats are narrow, those of a floor and at its edge are not")
   };
   for (int i = 0; i < 3000; ++i) {
     const float u = random.next_float(), v = 2 * random.next_float() - 1;
-    // The floor's outermost cells among them.
+    // Includes the outermost cells of the floor.
     add({2 * v, 2 * (2 * u - 1), 0}, On::floor);
     add({0.03f * u, v, 1 + 0.03f * float(i % 3)}, On::slat);
-    // Wherever on it a cell is made.
+    // A shelf as wide as one cell is narrow, wherever on it a cell is made.
     add({size * u, v, 1.5f}, On::slat);
     add({0.3f * u, v, 2}, On::shelf);
   }
@@ -220,7 +221,7 @@ TEST_CASE("cells of slats are narrow, those of a floor and at its edge are not")
     slats += on[c] == On::slat ? 1 : 0;
   }
   CHECK(slats >= 60);
-  // Of cells that were there before, and where there are none.
+  // Switching it off unmarks existing and further cells.
   map.look_closely(false, 2);
   for (size_t c = 0; c < on.size(); ++c) CHECK_FALSE(map.is_narrow(c));
   map.look_closely(true, 2);

@@ -34,7 +34,7 @@ TEST_CASE("two cells that see half of each other") {
   rows.add({0, 2, 0, false, Rgb{0}}, to_one);
   rows.add({1, 4, 0, false, Rgb{4, 0, 0}}, std::vector<RowEntry>{{0, Rgb{0.8f}}, {0, Rgb{0.8f}}});
   rows.finish(2);
-  // E0 = 1 + E1 / 4, E1 = 1 (red) + .4 E0
+  // E0 = 1 + E1 / 4, E1 = 1 (red) + .4 E0.
   const CellLight light = rows.solve({Rgb{1}, Rgb{0}}, {0, 0}, {1, 1}, 1);
   const double red = (1 + 0.25) / (1 - 0.25 * 0.4), green = 1 / (1 - 0.25 * 0.4);
   CHECK(double(light.irradiance[0].r) == doctest::Approx(red).epsilon(1e-5));
@@ -55,8 +55,9 @@ TEST_CASE("a room of reflectance .95 and more keeps its light, and is solved in 
   }
 }
 
-// Bounce after bounce, E - .5 would fall by .001 a bounce, and what one room has and the other
-// lacks by .003: thousands of bounces, which a common factor for all cells does not shorten.
+// With plain bounces, E - .5 would fall by .001 per bounce, and the difference between the two
+// rooms by .003. That is thousands of bounces, which a common factor for all cells does not
+// shorten.
 TEST_CASE("two bright rooms with a chink between them are solved in few rounds") {
   constexpr uint32_t n = 400;
   constexpr double reflectance = 0.999, chink = 0.001;
@@ -77,7 +78,7 @@ TEST_CASE("two bright rooms with a chink between them are solved in few rounds")
   const CellLight light =
       rows.solve(direct, std::vector<float>(2 * n, 0), std::vector<float>(2 * n, 1), 2);
   CHECK(light.iterations <= 40);
-  // What does not balance, by rows again in double precision.
+  // The residual, by the rows again in double precision.
   double worst = 0;
   for (uint32_t i = 0; i < 2 * n; ++i) {
     double sum = 0;
@@ -98,7 +99,7 @@ TEST_CASE("importance is the adjoint of light") {
     direct[i] = Rgb{random.next_float()};
     asked[i] = random.next_float();
   }
-  // grey light, so that luminances of weights are the weights
+  // In grey light the luminances of weights are the weights.
   CellRows grey;
   Random again(11);
   for (uint32_t i = 0; i < n; ++i) {
@@ -117,7 +118,7 @@ TEST_CASE("importance is the adjoint of light") {
   }
   CHECK(forward == doctest::Approx(backward).epsilon(1e-3));
   CHECK(std::isfinite(forward));
-  // … from wherever it starts
+  // The result does not depend on the start.
   std::vector<float> known(n / 2);
   for (float& k : known) k = 10 * random.next_float();
   const std::vector<float> anew = grey.importance(asked, known, 200);
@@ -135,7 +136,7 @@ TEST_CASE("the same light for any number of threads") {
 }
 
 TEST_CASE("what halves differ by goes on to the cells that see it") {
-  // The first cell sees the second by both halves of its rays alike.
+  // Both halves of the first cell's rays see the second cell alike.
   CellRows rows;
   const std::vector<RowEntry> entries(4, RowEntry{1, Rgb{0.5f}});
   for (const bool is_second : {false, true}) rows.add({0, 4, 0, is_second, Rgb{0}}, entries);
@@ -166,9 +167,9 @@ TEST_CASE("draws of noise: every cell errs by itself, and so do its rays and its
     }
   CHECK(of_others == doctest::Approx(25).epsilon(0.05));
   for (const float d : draws[0]) of_first += double(d) * double(d) / draws_of_noise;
-  // A quarter of the variance of a mean of 999; sixteen draws tell it within some 35 %.
+  // A quarter of the variance of a mean of 999, which sixteen draws estimate within some 35 %.
   CHECK(of_first == doctest::Approx(0.25 * 25 / (cells - 1)).epsilon(0.7));
-  // What is off comes around where cells see each other.
+  // Where cells see each other, errors come back to their cell.
   CellRows both;
   both.add({0, 1, 0, false, Rgb{0}}, std::vector<RowEntry>{{1, Rgb{0.5f}}});
   both.add({1, 1, 0, false, Rgb{0}}, std::vector<RowEntry>{{0, Rgb{0.5f}}});
@@ -193,8 +194,8 @@ TEST_CASE("importance stays a number where rows of somebody's file make light gr
 
 namespace {
 
-// Cells in a crease that see one another by one ray each, which gloss made count for more than
-// there is, among cells that see many.
+// Cells in a crease that see each other by one ray each, which gloss made too heavy, among cells
+// that see many.
 CellRows rows_with_creases(size_t cells) {
   CellRows rows;
   Random random(3);
@@ -211,8 +212,8 @@ CellRows rows_with_creases(size_t cells) {
   return rows;
 }
 
-// A row of white rooms, in each of which one cell is all that the others see, and sees those of the
-// next room: what the many send back is far more, summed over the cells, than the one gets.
+// A row of white rooms. In each room, one cell is all that the others see, and it sees those of the
+// next room. Summed over cells, the many send back far more than the one gets.
 CellRows rows_that_see_few(uint32_t rooms, uint32_t cells_of_room) {
   CellRows rows;
   Random random(7);

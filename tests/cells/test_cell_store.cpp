@@ -1,4 +1,4 @@
-// Cells as files: what comes back, what is refused, and how they are added to.
+// Files of cells: what comes back, what is refused, and how cells are added to them.
 #include "cells/cell_store.h"
 
 #include <doctest/doctest.h>
@@ -26,7 +26,7 @@ Scene floor_scene() {
   return s;
 }
 
-// So many hits on the floor, in cells that see each other at random.
+// Makes cells from this many hits on the floor; they see each other at random.
 CellStore random_store(const Tracer& tracer, int hits) {
   CellStore store;
   auto map = std::make_shared<CellMap>(tracer, 0.5f);
@@ -40,7 +40,7 @@ CellStore random_store(const Tracer& tracer, int hits) {
   std::vector<uint32_t> cells;
   for (uint32_t c = 0; c < map->size(); ++c)
     if (!map->hits(c).empty()) cells.push_back(c);
-  CHECK(cells.size() < map->size());  // others are halved
+  CHECK(cells.size() < map->size());  // the other cells are halved
   for (uint32_t c = 0; c < map->size(); ++c) {
     std::vector<RowEntry> entries(c % 5);
     for (RowEntry& e : entries)
@@ -153,7 +153,7 @@ TEST_CASE("values that no cells have are refused, though the file is whole") {
   CHECK_FALSE(with([](CellStore& s) {
                 s.rows.add({0, 8, 0, false, Rgb{0}}, std::vector<RowEntry>{{0, Rgb{-1}}});
               }).empty());
-  // What was halved has no row, and is seen by none.
+  // A halved cell has no row, and no cell sees it.
   const auto halved = [](const CellStore& s) {
     uint32_t c = 0;
     while (!s.map->hits(c).empty()) ++c;
@@ -166,7 +166,7 @@ TEST_CASE("values that no cells have are refused, though the file is whole") {
                 s.rows.add({0, 8, 0, false, Rgb{0}}, std::vector<RowEntry>{{halved(s), Rgb{1}}});
               }).empty());
   CHECK_FALSE(with([](CellStore& s) { s.rows.add({0, 0, 0, false, Rgb{0}}, {}); }).empty());
-  // Voxels of such a size have no numbers.
+  // Voxels of such a size cannot be numbered.
   CHECK_FALSE(with([&](CellStore& s) {
                 s = {};
                 auto map = std::make_shared<CellMap>(tracer, 1e-7f);

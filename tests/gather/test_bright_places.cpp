@@ -1,4 +1,4 @@
-// Gather rays that are aimed at what is bright: the same mean, and less noise.
+// Gather rays that are guided to lit regions: the same mean, and less noise.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ CellHit facing(const Vec3& position, const Vec3& normal) {
   return {position, normal, normal, 1e-5f};
 }
 
-// What rays met that look down on a floor of 4 × 4 m, on which a square of 30 cm is bright.
+// Pilot hits of rays that look down on a floor of 4 × 4 m with a bright square of 30 cm.
 struct Floor {
   static constexpr int side = 40;
   std::vector<PilotHit> seen;
@@ -35,14 +35,15 @@ struct Floor {
         irradiance.push_back(Rgb{is_bright ? brightness : 1});
       }
   }
-  static constexpr float first = 5 * cell_size - 2, last = 8 * cell_size - 2;  // of the square
+  static constexpr float first = 5 * cell_size - 2,
+                         last = 8 * cell_size - 2;  // borders of the square, metres
   // Radiance along a ray.
   static float shines(const Vec3& from, const Vec3& direction, float brightness) {
     if (direction.z >= 0) return 0.5f;
     const Vec3 p = from - direction * (from.z / direction.z);
     return p.x > first && p.x < last && p.y > first && p.y < last ? 0.5f * brightness : 0.5f;
   }
-  // Its mean over rays by cosine, by a sum over the square.
+  // Mean of shines() over cosine-distributed rays, by a sum over the square.
   static double mean_at(const CellHit& at, float brightness) {
     constexpr int n = 400;
     const double step = double(last - first) / n;
@@ -111,8 +112,8 @@ TEST_CASE("rays aimed at bright places have the mean of rays by cosine, and less
   Random random(1);
   double fewest = 1e9;
   for (int k = 0; k < 40; ++k) {
-    // Anywhere above the floor, turned anywhere: beside the bright square and within its sphere,
-    // and with the horizon through it.
+    // Random places above the floor, with random normals: also beside the bright square, within its
+    // sphere, and with the horizon through it.
     Vec3 p = random_point(random, 2);
     p.z = random_size(random, 0.02f, 2);
     if (k == 0) p = {-1.35f, -1.35f, 0.05f};
@@ -161,11 +162,11 @@ TEST_CASE("what the first rays bring tells later ones where to look") {
     }
     return n;
   };
-  // By a few tries of sight …
+  // A few visibility tests find the sheet.
   const BrightSight of_hidden = places.sight_from({&hidden, 1}),
                     of_open = places.sight_from({&open, 1});
   CHECK(aimed(hidden, of_hidden) < 0.6 * aimed(open, of_open));
-  // … and by rays that find nothing there.
+  // Rays that find nothing there also correct the aim.
   BrightSight told = of_open;
   const GatherAim aim(places, told, open);
   BrightTally tally;
@@ -178,7 +179,7 @@ TEST_CASE("what the first rays bring tells later ones where to look") {
   tally.tell(told);
   CHECK(told.rest == doctest::Approx(100));
   CHECK(aimed(open, told) < 0.5 * aimed(open, of_open));
-  // None at all: nothing is changed.
+  // Without rays, nothing changes.
   BrightTally().tell(told);
   CHECK(told.rest == doctest::Approx(100));
 }
@@ -192,7 +193,7 @@ TEST_CASE("sensors of a patch share an aim: the mean of rays by cosine, and less
   Random random(2);
   SensorAims aims;
   for (int round = 0; round < 8; ++round) {
-    // Patches of 20 cm, each turned its own way and seldom flat, of 1000 sensors each.
+    // Bumpy patches of 20 cm in different orientations, with 1000 sensors each.
     SensorBatch sensors;
     sensors.offset = 1e-5f;
     for (uint64_t patch = 0; patch < 4; ++patch) {

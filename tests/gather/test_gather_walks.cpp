@@ -1,4 +1,4 @@
-// Light straight from sources at what gather rays meet where there is no cell.
+// Direct light where gather rays meet surfaces without a cell.
 #include "gather/gather_walks.h"
 
 #include <doctest/doctest.h>
@@ -17,9 +17,9 @@
 using namespace troffer;
 using namespace troffer::test;
 
-// What is kept of a coat is ∫ L cos g / ḡ, ḡ the mean of g by the cosine: under an even sky of
-// radiance 1 it is π, as without a coat. Nothing competes with the draws, for walks that go on from
-// here count no light.
+// A coated place keeps ∫ L cos g / ḡ, with ḡ the cosine-weighted mean of g. Under a uniform sky of
+// radiance 1 it is π, as without a coat. Light samples have no competition, because walks that go
+// on from here do not count emission.
 TEST_CASE("draws of sources bring coated surfaces all of their light") {
   for (const bool is_coated : {false, true}) {
     CAPTURE(is_coated);
@@ -53,8 +53,8 @@ namespace {
 
 enum class Cover { none, clear_coat, smooth_clear_coat };
 
-// Black gloss all around the origin, which under an even sky of radiance 1 sends what it reflects.
-// With a cover the gloss itself is black, too.
+// Black surfaces with gloss all around the origin. Under a uniform sky of radiance 1 they send what
+// they reflect. With a cover the gloss itself is black, too.
 Scene black_gloss(float alpha, Cover cover) {
   Scene s;
   Material m;
@@ -73,11 +73,11 @@ Scene black_gloss(float alpha, Cover cover) {
 }
 
 struct Gathered {
-  double mean = 0, sigma = 0;        // of what rays bring; sigma: of the mean
-  double went_on = 0, were_lit = 0;  // per ray
+  double mean = 0, sigma = 0;        // of what rays bring; sigma: standard error of the mean
+  double went_on = 0, were_lit = 0;  // per ray: continued rays and light samples
 };
 
-// Rays that come down on the origin by a cosine of .8.
+// Traces rays that arrive at the origin at a cosine of .8.
 Gathered gathered(const PreparedScene& scene, bool is_of_rows) {
   const GatherWalks walks(scene, nullptr);
   constexpr uint32_t rays = 1 << 17;
@@ -107,8 +107,8 @@ Gathered gathered(const PreparedScene& scene, bool is_of_rows) {
 
 }  // namespace
 
-// By a light that is drawn, and by a ray that goes on, either of which only sometimes; rays of
-// cells go on more often, and those of narrow gloss too.
+// Roulette sends a light sample and a continued ray only sometimes. Rays of cells continue more
+// often, and so do those of narrow gloss.
 TEST_CASE("gather rays bring what gloss sends, though few go on from it") {
   for (const float alpha : {0.01f, 0.1f, 0.25f, 0.5f, 0.9f})
     for (const bool is_of_rows : {false, true}) {
@@ -124,12 +124,12 @@ TEST_CASE("gather rays bring what gloss sends, though few go on from it") {
       const bool is_narrow = alpha < 0.2f;
       CHECK(g.went_on ==
             doctest::Approx(all / (is_of_rows || is_narrow ? 0.1 : 0.5)).epsilon(0.03));
-      // Half of the lights that are drawn are below the floor.
+      // Half of the light samples are below the floor.
       if (!is_narrow) CHECK(g.were_lit == doctest::Approx(0.5 * all / 0.25).epsilon(0.03));
     }
 }
 
-// Which albedo() leaves out, so that it does not say how rarely they may go on.
+// albedo() does not cover clear coats, so roulette cannot be based on it.
 TEST_CASE("gather rays bring what a clear coat over black sends") {
   for (const Cover cover : {Cover::clear_coat, Cover::smooth_clear_coat}) {
     CAPTURE(int(cover));
@@ -150,8 +150,8 @@ TEST_CASE("gather rays bring what a clear coat over black sends") {
   }
 }
 
-// Images hold what other surfaces show beside what this one does, or nothing. A floor of small
-// tiles, each of which shows the white middle of an image that is black around it.
+// Images have texels for other surfaces, or for none. Here each small tile of a floor shows the
+// white middle of an image that is black around it.
 TEST_CASE("gather rays see no texels that their surface does not show") {
   Scene s;
   s.textures.push_back(grey_image(
@@ -182,7 +182,8 @@ TEST_CASE("gather rays see no texels that their surface does not show") {
     CHECK(double(a.walk.throughput.g) == doctest::Approx(0.8).epsilon(0.001));
 }
 
-// However many there are, and some of them carry nothing and are not followed.
+// The result does not depend on how many rays there are. Some rays carry nothing and are not
+// followed.
 TEST_CASE("rays that gather together see what each sees by itself") {
   Scene s;
   Material m;
@@ -260,7 +261,7 @@ TEST_CASE("one of the arrivals that a walk has split into stands for all of them
   CHECK(sums[1] == 0);
   CHECK(sums[2] == doctest::Approx(0.5).epsilon(0.01));
   CHECK(alone == doctest::Approx(0.3).epsilon(1e-5));
-  // What the walk has met elsewhere is none of it.
+  // Arrivals of the same walk at other lengths stay separate.
   std::vector<GatherArrival> apart(2);
   apart[1].length = 1;
   keep_one_of_each(apart);

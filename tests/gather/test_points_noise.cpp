@@ -1,4 +1,4 @@
-// What points err by for cells' sake, and how many rays that is worth.
+// Noise of measuring points by the noise of cells, and how many rays it is worth.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -14,8 +14,8 @@ namespace {
 constexpr size_t cells = 400;
 constexpr uint32_t rays_of_cell = 16;
 
-// Cells whose rays run into light of 0 or 2, by chance: the mean of `rays_of_cell` of them has a
-// variance of 1 / rays_of_cell.
+// Makes cells whose rays run into light of 0 or 2 at random. The mean of `rays_of_cell` of them has
+// a variance of 1 / rays_of_cell.
 CellRows cells_of_chance(Random& random, std::vector<Rgb>& light) {
   CellRows rows;
   light.assign(cells, Rgb{0});
@@ -31,8 +31,7 @@ CellRows cells_of_chance(Random& random, std::vector<Rgb>& light) {
   return rows;
 }
 
-// All cells are equally large, in a square that rays are spread over evenly, as those of pilots
-// are.
+// All cells are equally large, in a square over which rays are stratified, as those of pilots are.
 PointsSeen points_that_see_all(size_t points, uint32_t rays_of_set, uint64_t seed) {
   constexpr uint32_t side = 20;
   static_assert(side * side == cells);
@@ -59,14 +58,14 @@ TEST_CASE("points that see all cells err as their mean does, by however few rays
       std::vector<Rgb> light;
       const CellRows rows = cells_of_chance(random, light);
       const PointsSeen seen = points_that_see_all(40, rays, rays + uint64_t(k));
-      // As much light straight from sources again.
+      // Direct light is as much again.
       const PointsNoise noise = noise_at_points(
           seen, std::vector<float>(40, 1), rows, light,
           {rows.differences(light, 1), std::vector<float>(cells, 0)}, {64, 64, 0}, 1);
       by_rows += noise.by_rows / worlds;
       CHECK(noise.by_hits == 0);
       CHECK(noise.gather_rays == 40 * 64);
-      // Cells' light varies by 1 / rays_of_cell, too.
+      // The light of cells varies by 1 / rays_of_cell, too.
       CHECK(noise.by_gather == doctest::Approx(1.0 / rays_of_cell / 64 / 4).epsilon(0.3));
     }
     CHECK(by_rows == doctest::Approx(1.0 / rays_of_cell / double(cells) / 4).epsilon(0.25));
@@ -113,9 +112,9 @@ TEST_CASE("cells get as many rays as leave the least variance for the time") {
   };
   CHECK(best > 2);
   for (const double f : {0.5, 0.9, 1.1, 2.0}) CHECK(work(best * f) > work(best));
-  // Few points are not worth more.
+  // Few points are worth no more rays.
   CHECK(times_as_many_rays({4e-5, 1e-6, 6e-6, 1e4}, rays) == 1);
-  // Memory is bounded.
+  // The number of rays is bounded, for memory.
   CHECK(times_as_many_rays({1, 1e-9, 1e-9, 1e12}, 1e6) * 1e6 < 2e7);
   CHECK(times_as_many_rays({1, 1e-9, 1e-9, 1e12}, 1e9) == 1);
 }

@@ -1,4 +1,4 @@
-// Which cells are halved, by what stands close above a part of them.
+// Halving of cells where something stands close above a part of them.
 #include <doctest/doctest.h>
 
 #include "gather/uneven_cells.h"
@@ -9,7 +9,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A piece of the floor, 20 cm wide, between x and x + .2, upside up.
+// Returns a piece of the floor, 20 cm wide, from x to x + .2, facing up.
 CellOutline piece(float x) {
   CellOutline cell;
   cell.corners = {Vec3{x, 0.4f, 0}, {x + 0.2f, 0.4f, 0}, {x + 0.2f, 0.6f, 0}, {x, 0.6f, 0}};
@@ -24,7 +24,7 @@ Scene floor_of_a_metre() {
   return s;
 }
 
-// A sheet that high above the floor.
+// Adds a sheet at height z above the floor.
 void add_sheet(Scene& s, float x0, float x1, float z) {
   add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{x0, 0, z}, {x0, 1, z}, {x1, 1, z}, {x1, 0, z}});
 }
@@ -38,11 +38,11 @@ TEST_CASE("cells with a close cover above a part of them are uneven where somebo
     const PreparedScene scene(std::move(s));
     return uneven_cells(scene)(piece(x), is_asked);
   };
-  CHECK(is_uneven(0.08f, 0.4f, 0.5f, 1));          // half of it
-  CHECK(is_uneven(0.08f, 0.4f, 0.48f, 0.53f));     // a strip
-  CHECK(!is_uneven(0.08f, 0.4f, 0.5f, 1, false));  // that nobody looks at
-  CHECK(!is_uneven(0.08f, 0.7f, 0.5f, 1));         // all of it
-  CHECK(!is_uneven(0.08f, 0.1f, 0.5f, 1));         // none
+  CHECK(is_uneven(0.08f, 0.4f, 0.5f, 1));          // covers half of it
+  CHECK(is_uneven(0.08f, 0.4f, 0.48f, 0.53f));     // covers a strip
+  CHECK(!is_uneven(0.08f, 0.4f, 0.5f, 1, false));  // the picture does not look at it
+  CHECK(!is_uneven(0.08f, 0.7f, 0.5f, 1));         // covers all of it
+  CHECK(!is_uneven(0.08f, 0.1f, 0.5f, 1));         // covers none of it
   CHECK(!is_uneven(0.3f, 0.4f, 0.5f, 1));          // too high to matter
   CHECK(!is_uneven(0.01f, 0.4f, 0.5f, 1));         // too low for any light below it
 }

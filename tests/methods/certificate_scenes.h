@@ -1,5 +1,5 @@
-// Random scenes for certificates: sources of every shape, clusters of real extent, and what may
-// stand between, at any size and far from the origin.
+// Random scenes for certificates: sources of every shape, clusters of real extent, and occluders
+// between them, of any size and far from the origin.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ enum class SourceShape : uint8_t {
 };
 constexpr int source_shapes = 7;
 
-// Where a scene stands, and how large it is: coordinates are rounded once, at the end.
+// Place and size of a scene. Coordinates are rounded only once, at the end.
 struct Placing {
   double scale = 1;
   Vec3d offset;
@@ -55,7 +55,7 @@ inline void add_facet(Scene& s, const Placing& at, const Vec3d& corner, const Ve
   add_quad(s, 0, {at(corner), at(corner + u), at(corner + u + v), at(corner + v)});
 }
 
-// A cell at infinity as far_cells.h has them, or a sun, somewhere above.
+// Adds a cell at infinity as in far_cells.h, or a sun, somewhere above.
 inline void add_far_source(Random& r, const Placing& at, CertificateScene& out) {
   const double distance = 0x1p20 * 4 * at.scale;
   const Framed frame(-normalize(Vec3d{0, 0, 1.1} + random_in_cube(r)));
@@ -66,7 +66,7 @@ inline void add_far_source(Random& r, const Placing& at, CertificateScene& out) 
   out.flat.plane = {at.offset - frame.normal * distance - (u + v) * 0.5, u, v, frame.normal};
 }
 
-// About (0,0,2), facing down, more or less.
+// Adds a source around (0,0,2), which roughly faces down.
 inline void add_source(Random& r, const Placing& at, CertificateScene& out) {
   const Vec3d centre{0, 0, 2};
   const double size = log_uniform(r, 0.02, 4);
@@ -107,8 +107,8 @@ inline void add_source(Random& r, const Placing& at, CertificateScene& out) {
     add_quad(out.scene, 0, {corners[0], corners[1], corners[2], corners[3]});
 }
 
-// A cluster about (0,0,0): a thumbnail's tile of some metres, a strip seen at a grazing angle, a
-// few millimetres, or a curved surface.
+// Adds a cluster around (0,0,0): a thumbnail's tile of some metres, a strip seen at a grazing
+// angle, a few millimetres, or a curved surface.
 inline void add_receivers(Random& r, const Placing& at, CertificateScene& out) {
   const double size = log_uniform(r, 1e-3, 6);
   const double width = r.next_double() < 0.5 ? size : size * log_uniform(r, 1e-3, 1);
@@ -135,7 +135,7 @@ inline void add_receivers(Random& r, const Placing& at, CertificateScene& out) {
   }
 }
 
-// A closed box, its front outside.
+// Adds a closed box with its front outside.
 inline void add_closed_box(Random& r, const Placing& at, Scene& s) {
   const Vec3d centre = random_in_cube(r) * 0.8 + Vec3d{0, 0, 1};
   const Vec3d x = random_in_cube(r) * 0.3;
@@ -150,8 +150,8 @@ inline void add_closed_box(Random& r, const Placing& at, Scene& s) {
   s.meshes.push_back(std::move(m));
 }
 
-// Plates, wires, specks, canopies about the source, walls, what stands on the receivers or crosses
-// the source, closed boxes, combs, and now and then what is no facet.
+// Adds plates, wires, specks, canopies around the source, walls, things that stand on the receivers
+// or cross the source, closed boxes, combs, and sometimes things that are no facets.
 inline void add_occluders(Random& r, const Placing& at, CertificateScene& out) {
   Scene& s = out.scene;
   const int n = int(r.next_double() * 7);
@@ -164,7 +164,7 @@ inline void add_occluders(Random& r, const Placing& at, CertificateScene& out) {
     } else if (kind == 1) {  // speck
       u = u * 0.01;
       v = v * 0.01;
-    } else if (kind == 2) {  // level, close to the source, or to the receivers
+    } else if (kind == 2) {  // level, close to the source or to the receivers
       const double z =
           r.next_double() < 0.7 ? 2 + 0.2 * (r.next_double() - 0.7) : log_uniform(r, 1e-3, 0.1);
       const double half = log_uniform(r, 0.1, 3);
@@ -175,7 +175,7 @@ inline void add_occluders(Random& r, const Placing& at, CertificateScene& out) {
       corner = {random_in_cube(r).x * 0.5, -5, -1};
       u = {0, 10, 0};
       v = {random_in_cube(r).x * 0.2, 0, 5};
-    } else if (kind == 4) {  // stands on the receivers' plane
+    } else if (kind == 4) {  // stands on the plane of receivers
       corner = Vec3d{corner.x, corner.y, 0} * 0.3;
       u.z = 0;
       v = {0, 0, 0.5};
@@ -206,8 +206,8 @@ inline void add_occluders(Random& r, const Placing& at, CertificateScene& out) {
   }
 }
 
-// A plate about a sphere, or beside it, at the height of its centre or so: what some receivers see
-// past, and others do not.
+// Adds a plate around a sphere or beside it, at about the height of its centre. Some receivers see
+// past it, others do not.
 inline void add_collar(Random& r, const Placing& at, const SphereSource& sphere, Scene& s) {
   const double radius = sphere.radius / at.scale, half = radius * log_uniform(r, 1.05, 6);
   const double inner = r.next_double() < 0.7 ? -half : radius * (1 + r.next_double());

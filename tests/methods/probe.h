@@ -1,4 +1,4 @@
-// Single rays through an integrator, many times over, with the spread of what comes back.
+// Traces single rays through an integrator many times, and returns the spread of the results.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +45,8 @@ inline ViewingRays repeated(const Ray& ray, uint64_t stream, uint32_t samples) {
   return rays;
 }
 
-// `sets` independently scrambled sets of `samples` rays each; a set's mean is one value.
+// Traces `sets` independently scrambled sets of `samples` rays each. The mean of a set is one
+// value.
 inline Probed probe(const Integrator& integrator, const Ray& ray, uint32_t samples, int sets,
                     uint64_t seed = 0, uint32_t effort_divisor = 1, float typical = 0) {
   Probed out;
@@ -94,7 +95,7 @@ inline uint32_t add_glass(Scene& s, bool is_thin, float roughness = 0) {
   return add_material(s, m);
 }
 
-// A closed box whose front is outside.
+// Adds a closed box with its front outside.
 inline void add_block(Scene& s, uint32_t material, const Vec3& a, const Vec3& b) {
   for (const uint32_t quad : add_box_inside(s, material, a, b))
     for (Triangle& t : s.meshes[quad].triangles) std::swap(t[1], t[2]);

@@ -1,5 +1,6 @@
-// Certificates through all that makes them (the hierarchy of facets and its tests in single
-// precision too) against rays in double precision. TROFFER_CERTIFICATE_SCENES: how many scenes.
+// Certificates by the whole chain (the hierarchy of facets and its single-precision tests included)
+// against rays in double precision. The variable TROFFER_CERTIFICATE_SCENES sets the number of
+// scenes.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -17,7 +18,7 @@ using namespace troffer::test;
 
 namespace {
 
-// Largest coordinate M of the scene, its receivers and its source.
+// Returns M, the largest coordinate of the scene, its receivers and its source.
 double magnitude_of(const CertificateScene& s) {
   double m = 0;
   const auto grow = [&](const Vec3d& p) {
@@ -33,8 +34,9 @@ double magnitude_of(const CertificateScene& s) {
   return m;
 }
 
-// 1: the segment passes through the triangle's inside, at least `tolerance` from its edges and with
-// both ends at least as far from its plane; 0: it misses the triangle by that; -1: neither.
+// Returns 1 if the segment passes through the triangle's inside, at least `tolerance` from its
+// edges and with both ends at least as far from its plane. Returns 0 if it misses the triangle by
+// that much, else -1.
 int meets(const Vec3d& from, const Vec3d& to, const Vec3d& a, const Vec3d& b, const Vec3d& c,
           double tolerance) {
   const Vec3d normal = cross(b - a, c - a);
@@ -56,7 +58,7 @@ int meets(const Vec3d& from, const Vec3d& to, const Vec3d& a, const Vec3d& b, co
   return is_near ? -1 : 1;
 }
 
-// The same for a sphere, which hides nothing from within …
+// The same for a sphere, which hides nothing from within.
 int meets(const Vec3d& from, const Vec3d& to, const Sphere& s, double tolerance) {
   const Vec3d a = Vec3d(s.centre) - from, d = to - from;
   const double t = std::clamp(dot(a, d) / length_squared(d), 0.0, 1.0);
@@ -66,7 +68,7 @@ int meets(const Vec3d& from, const Vec3d& to, const Sphere& s, double tolerance)
   return inside < tolerance || ends < double(s.radius) + tolerance ? -1 : 1;
 }
 
-// … and for a disk.
+// The same for a disk.
 int meets(const Vec3d& from, const Vec3d& to, const Disk& disk, double tolerance) {
   const Vec3d n = normalize(Vec3d(disk.normal)), c(disk.centre);
   const double h0 = dot(n, from - c), h1 = dot(n, to - c);
@@ -76,14 +78,14 @@ int meets(const Vec3d& from, const Vec3d& to, const Disk& disk, double tolerance
   return inside > tolerance ? 1 : inside < -tolerance ? 0 : -1;
 }
 
-// Over all that may hide a source: surely hidden, surely free, or neither.
+// The same over everything that may hide a source: surely hidden, surely free, or neither.
 int is_hidden(const CertificateScene& scene, const Occluders& occluders, const Vec3d& from,
               const Vec3d& to, double tolerance) {
   int answer = 0;
   const auto look = [&](int met) {
     if (answer != 1 && met != 0) answer = met;
   };
-  const size_t own = scene.shape == SourceShape::sphere ? 1 : 0;  // the source is the first
+  const size_t own = scene.shape == SourceShape::sphere ? 1 : 0;  // the source is the first sphere
   for (size_t i = own; i < scene.scene.spheres.size(); ++i)
     look(meets(from, to, scene.scene.spheres[i], 4 * tolerance));
   for (const Disk& d : scene.scene.disks) look(meets(from, to, d, 4 * tolerance));
@@ -99,7 +101,7 @@ int is_hidden(const CertificateScene& scene, const Occluders& occluders, const V
   return answer;
 }
 
-// Whether y, in the source's plane, belongs to the source.
+// True if y, in the source's plane, belongs to the source.
 bool is_on(const FlatSource& s, const Vec3d& y) {
   const Vec3d d = y - s.plane.origin, n = cross(s.plane.u, s.plane.v);
   const double u = dot(cross(d, s.plane.v), n) / length_squared(n);
@@ -113,9 +115,9 @@ bool is_on(const FlatSource& s, const Vec3d& y) {
   return true;
 }
 
-// The end of the segment from x that reaches the source in the direction of `through`; false if
-// there is none. What lies within 2e-6 M of a flat source's plane counts as lying in it
-// (docs/certified.md, "Shafts"): where light is claimed the segment ends where that `slab` begins.
+// Sets `end` of the segment from x that reaches the source in the direction of `through`; false if
+// there is none. Anything within 2e-6 M of a flat source's plane counts as lying in it
+// (docs/certified.md, "Shafts"). Where light is claimed, the segment ends where that `slab` begins.
 bool aim(const CertificateScene& s, const Vec3d& x, const Vec3d& through, double slab, Vec3d& end) {
   const Vec3d d = through - x;
   if (s.shape == SourceShape::sphere) {
@@ -133,7 +135,7 @@ bool aim(const CertificateScene& s, const Vec3d& x, const Vec3d& through, double
   return true;
 }
 
-// Somewhere on the source, often close to its outline.
+// Returns a point of the source, often close to its outline.
 Vec3d point_of_source(const CertificateScene& s, Random& r) {
   if (s.shape == SourceShape::sphere)
     return s.sphere.centre + normalize(random_in_cube(r)) * (s.sphere.radius * r.next_double());
@@ -149,7 +151,7 @@ Vec3d point_of_source(const CertificateScene& s, Random& r) {
   return sum / weights;
 }
 
-// Near the rim of a sphere or disk, as it may be seen from x.
+// Returns a point near the rim of a sphere or disk, as seen from x.
 Vec3d point_at_rim(const Scene& scene, const Vec3d& x, Random& r) {
   const size_t n = scene.spheres.size() + scene.disks.size();
   const size_t i = std::min(size_t(r.next_double() * double(n)), n - 1);
@@ -164,7 +166,7 @@ Vec3d point_at_rim(const Scene& scene, const Vec3d& x, Random& r) {
   return Vec3d(s.centre) + normalize(cross(way, random_in_cube(r))) * (double(s.radius) * off);
 }
 
-// Where a ray may betray a certificate: through a facet's inside, or past its edge.
+// Returns a point where a ray may contradict a certificate: inside a facet, or just past its edge.
 Vec3d point_at_facet(const Occluders& occluders, double tolerance, Random& r) {
   const Quad& q = occluders.facet(uint32_t(r.next_double() * double(occluders.facet_count())));
   const size_t i = size_t(r.next_double() * 4), j = (i + 1 + size_t(r.next_double() * 3)) % 4;
@@ -191,7 +193,7 @@ std::vector<SourceVisibility> answers_of(const CertificateScene& s, const Occlud
   if (s.is_far()) request.far = &far;
   CertifiedMemory memory;
   CertifiedOptions options;
-  options.rays.most_rays = options.rays.most_pair_rays = 1;  // rays are not what is looked at
+  options.rays.most_rays = options.rays.most_pair_rays = 1;  // rays are not under test
   certified_light(cluster, {&request, 1}, nullptr, world, options, memory,
                   [&](uint32_t, std::span<const SourceVisibility> answers) {
                     std::copy(answers.begin(), answers.end(), out.begin());
@@ -262,8 +264,8 @@ TEST_CASE("certificates are never contradicted: real extents, all shapes, far fr
 
 namespace {
 
-// Direct light at the floor in n x n points over a square of this size about (x, y), seen from
-// `eye`: one batch, so that what lies close together is a cluster.
+// Direct light at n × n points of the floor, in a square of this size around (x, y), seen from
+// `eye`. All points are one batch, so that neighbours form a cluster.
 std::vector<double> direct_light(const Integrator& integrator, const Vec3& eye, const Vec2& centre,
                                  float size, int n, uint32_t set) {
   ViewingRays rays;
@@ -286,7 +288,7 @@ std::vector<double> direct_light(const Integrator& integrator, const Vec3& eye, 
 
 }  // namespace
 
-// A plate about the sphere, 5 mm over its centre: a wide cluster sees past the plane through the
+// A plate around the sphere, 5 mm above its centre. A wide cluster sees past the plane through the
 // centre, and the plate hides some of what it sees there.
 TEST_CASE("a thumbnail of a sphere under a canopy is as by rays") {
   Scene s;

@@ -23,7 +23,7 @@ void add_floor(Scene& s, uint32_t material) {
   add_quad(s, material, {Vec3{-20, -20, 0}, {20, -20, 0}, {20, 20, 0}, {-20, 20, 0}});
 }
 
-// A square source that shines both ways, tilted, above the floor.
+// Adds a tilted square source that shines both ways, above the floor.
 void add_two_sided(Scene& s) {
   make_light(s, add_quad(s, 0, {Vec3{0, 0, 1}, {1, 0, 1}, {1, 1, 1.3f}, {0, 1, 1.3f}}), Rgb{3},
              true);
@@ -47,7 +47,7 @@ void add_textured(Scene& s) {
 const Vec3 eye{-1.5f, 1, 1.2f};  // no source stands between it and the points
 const std::vector<Vec3> targets{{0, -0.5f, 0}, {0.2f, -2, 0}, {-2, 2, 0}};
 
-// Both methods see the same at the targets of `scene`, from the eye.
+// Checks that both methods see the same at points of `scene`, from the eye.
 void check_against_fixed(const PreparedScene& scene, const std::vector<Vec3>& points, double error,
                          double significance) {
   const WaveIntegrator mine = certified_integrator(scene, error);
@@ -104,7 +104,7 @@ TEST_CASE("certified: where nothing hides a flat source, light is exact, and no 
       for (const Rgb& radiance : out.direct)
         CHECK(double(radiance.g) == doctest::Approx(expected).epsilon(2e-5));
       CHECK(counters.shadow_rays == 0);
-      // Of a folded mesh each triangle may stand before the other.
+      // Each triangle of a folded mesh may hide the other.
       if (scene.primitives.size() > 1) continue;
       CHECK(counters.lit_certified == 10);
       CHECK(counters.masked + counters.mixed + counters.dark_certified == 0);
@@ -224,7 +224,7 @@ TEST_CASE("certified: what a scratch was used for before leaves no trace") {
   add_leaf(s, {Vec3{-0.3f, -1.2f, 0.8f},
                {0.1f, -1.2f, 0.8f},
                {0.1f, -0.1f, 0.8f},
-               {-0.3f, -0.1f, 0.8f}});  // rays are needed
+               {-0.3f, -0.1f, 0.8f}});  // makes rays necessary
   add_block(s, grey, {-0.6f, -0.7f, 0.7f}, {0.6f, 0.3f, 0.75f});
   add_floor(s, grey);
   const PreparedScene scene(std::move(s));
@@ -284,14 +284,14 @@ TEST_CASE("certified: irradiance at points, exact in the open and as by fixed un
 TEST_CASE("certified: of many sources, steps of one normal lose none that stands between them") {
   Scene s;
   add_diffuse(s, Rgb{0.6f});
-  for (int i = 0; i < 30; ++i) {  // upright, in a row, between the heights of the points
+  for (int i = 0; i < 30; ++i) {  // upright, in a row, at heights between those of the points
     const float y = 0.4f * float(i) - 6;
     make_light(
         s,
         add_quad(s, 0, {Vec3{3, y, 0.2f}, {3, y, 0.4f}, {3, y + 0.2f, 0.4f}, {3, y + 0.2f, 0.2f}}),
         Rgb{5});
   }
-  add_block(s, 0, {20, -20, -1}, {21, 20, 0});  // wide scene, wide clusters
+  add_block(s, 0, {20, -20, -1}, {21, 20, 0});  // makes the scene and the clusters wide
   const PreparedScene scene(std::move(s));
   const WaveIntegrator mine = certified_integrator(scene);
   SensorBatch sensors;
@@ -315,7 +315,7 @@ TEST_CASE("certified: of many sources, steps of one normal lose none that stands
 TEST_CASE("certified: a point on a polygon of many corners belongs to one of its parts") {
   Scene s;
   add_diffuse(s, Rgb{0.6f});
-  // a square under an arc; of the fan's two parts the second is the square
+  // A square under an arc. The second of the fan's two parts is the square.
   std::vector<Vec3> outline{{0, 0, 2}};
   for (int i = 1; i < 10; ++i)
     outline.push_back({0.1f * float(i), -0.3f * std::sin(pi_f * 0.1f * float(i)), 2});
@@ -362,6 +362,6 @@ TEST_CASE("certified: a leaf takes rays where it may hide a source, and nowhere 
   const double under = rays_at({0, -0.6f, 0}), beside = rays_at({1.5f, -0.6f, 0});
   MESSAGE(under, " rays under the leaf, ", beside, " beside it");
   CHECK(under > 0);
-  CHECK(under < 20);  // through all that is open: 256
+  CHECK(under < 20);  // with all lights open it would be 256
   CHECK(beside == 0);
 }

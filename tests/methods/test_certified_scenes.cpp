@@ -1,6 +1,6 @@
-// The certified integrator on scenes that are out to break it: sources on, in and behind what hides
-// them, surfaces with two horizons, sources much nearer than they are large. Fixed sampling with
-// many rays, from the same places, is the judge.
+// The certified integrator on hostile scenes: sources on, in and behind occluders, surfaces with
+// two horizons, sources much nearer than they are large. The reference is fixed sampling with many
+// rays from the same places.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -32,13 +32,13 @@ void add_floor(Scene& s, uint32_t material = 0) {
   add_quad(s, material, {Vec3{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}});
 }
 
-// A downward panel [x0,x1] × [y0,y1] at height z.
+// Adds a downward panel [x0,x1] × [y0,y1] at height z.
 void add_panel(Scene& s, float x0, float x1, float y0, float y1, float z, float radiance) {
   make_light(s, add_quad(s, 0, {Vec3{x0, y0, z}, {x0, y1, z}, {x1, y1, z}, {x1, y0, z}}),
              Rgb{radiance});
 }
 
-// A coarse ball with smooth normals: its own facets hide what its normals see.
+// Adds a coarse ball with smooth normals: its own facets hide directions that its normals face.
 void add_smooth_ball(Scene& s, uint32_t material, const Vec3& centre, float radius) {
   constexpr uint32_t rows = 8, columns = 14;
   Mesh m;
@@ -253,7 +253,7 @@ TEST_CASE("a sphere that shines outwards does not light its inside, whatever rou
   }
 }
 
-// Its fixture enters the bulb, balls and disks are no facets: all the same lists are complete.
+// The bulb's fixture enters it, and balls and disks are no facets, but all lists are complete.
 TEST_CASE("certified: bulbs in their fixtures, balls and disks take no ray") {
   const std::vector<HostileScene> all = hostile_scenes();
   size_t found = 0;

@@ -1,4 +1,4 @@
-// Light straight from sources against closed forms and quadrature, for both methods.
+// Direct light against closed forms and quadrature, for both methods.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -80,7 +80,7 @@ void add_floor(Scene& s, uint32_t material) {
 const Vec3 eye{-1.5f, 1, 1.2f};  // no source stands between it and the points
 const std::vector<Vec3> targets{{0, -0.5f, 0}, {0.2f, -2, 0}, {-2, 2, 0}};
 
-// Radiance that leaves x towards the eye, by quadrature over every source's (u,v).
+// Returns the radiance that leaves x towards the eye, by quadrature over every source's (u,v).
 double by_quadrature(const PreparedScene& scene, const Vec3& x, uint32_t material, int cells) {
   const Ray ray = ray_towards(eye, x);
   Surface surface;
@@ -90,7 +90,7 @@ double by_quadrature(const PreparedScene& scene, const Vec3& x, uint32_t materia
   const Vertex v = make_vertex(surface, ray.direction);
   const Bsdf bsdf = make_bsdf(scene.bsdf_tables, scene.scene, material, {}, true);
   double sum = 0;
-  // many sources are small ones
+  // Many sources are small ones.
   cells = std::max(cells / int(std::sqrt(double(scene.scene.lights.size()))), 32);
   for (uint32_t e = 0; e < scene.scene.lights.size(); ++e) {
     const Light& light = scene.scene.lights[e];
@@ -149,8 +149,8 @@ TEST_CASE("a matte floor shows reflectance × exact irradiance / pi") {
   }
 }
 
-// Half a millimetre of a strip is seen over an edge 10 cm above it: rays that end elsewhere than at
-// the strip see another half. All that is seen is a narrow rectangle whose light is in closed form.
+// An edge 10 cm above the point shows half a millimetre of a strip, and rays that end slightly off
+// the strip would see a different half. The visible part is a narrow rectangle with a closed form.
 TEST_CASE("a strip of light behind an edge that leaves half a millimetre of it") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
@@ -252,8 +252,8 @@ TEST_CASE("a textured mesh source over a glossy floor") {
 }
 
 TEST_CASE("an alpha-masked sheet lets through what its mask does not cover") {
-  // The left half of the sheet is a hole: a small source straight above lights x > 0 not at all
-  // and x < 0 fully.
+  // The left half of the sheet is a hole. A small source straight above lights x < 0 fully and x >
+  // 0 not at all.
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f});
   Texture t;

@@ -1,4 +1,4 @@
-// Many lights: estimates of what groups send, and the drawing of those that are not certified.
+// Many lights: estimates of what groups send, and light samples for those that are not certified.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,8 +12,8 @@ using namespace troffer::test;
 
 namespace {
 
-// n × n lights of about 3 cm under a ceiling of 6 × 6 m, over a matte floor, between them a table's
-// plate, some posts and a beam right before the lights.
+// A room with n × n lights of about 3 cm under a ceiling of 6 × 6 m, over a matte floor. In
+// between: a table top, some posts and a beam right below the lights.
 Scene room_of_lights(uint32_t n) {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
@@ -34,7 +34,7 @@ Scene room_of_lights(uint32_t n) {
   return s;
 }
 
-// A closed ball of triangles.
+// Adds a closed ball of triangles that shines.
 void add_ball_light(Scene& s, const Vec3& centre, float radius, int rings, Rgb radiance) {
   const int sides = 2 * rings;
   std::vector<Vec3> p;
@@ -54,7 +54,7 @@ void add_ball_light(Scene& s, const Vec3& centre, float radius, int rings, Rgb r
   add_mesh_light(s, 0, std::move(p), std::move(t), radiance, false);
 }
 
-// As many viewing rays as a pixel has, all of them towards one point of the floor.
+// Returns a viewing ray to a point of the floor.
 Ray ray_to(const Vec3& point) {
   return ray_towards(point + Vec3{0.3f, -0.2f, 0.4f}, point);
 }
@@ -70,7 +70,7 @@ WaveIntegrator certified_of_pixel(const PreparedScene& scene, double error, int 
 
 const Vec3 floor_points[] = {{1.7f, -1.2f, 0}, {0.5f, 0.2f, 0}, {-0.7f, -0.7f, 0}, {0, 1, 0}};
 
-// What the floor would send on of all lights, nothing hidden.
+// Returns what the floor would send on from all lights if nothing hid them.
 double unoccluded(const PreparedScene& scene, const Vec3& x) {
   double sum = 0;
   for (const Light& light : scene.scene.lights) {
@@ -116,7 +116,7 @@ TEST_CASE("many lights: no group that a receiver in the ball can see is estimate
     else if (seed % 5 == 1)  // two triangles, folded
       add_mesh_light(s, 0, {centre, centre + u, centre + u + v * r.next_float(), centre + v},
                      {{0, 1, 2}, {0, 2, 3}}, Rgb{1}, seed % 2 == 0);
-    else if (seed % 5 == 2)  // … and anyhow
+    else if (seed % 5 == 2)  // two triangles in any position
       add_mesh_light(s, 0, {centre, centre + u, centre + v, centre + random_point(r, 0.5f)},
                      {{0, 1, 2}, {0, 2, 3}}, Rgb{1}, seed % 2 == 0);
     else
@@ -174,7 +174,8 @@ TEST_CASE("many lights: the drawn ones are unbiased, and err by what is allowed 
               std::sqrt(told.variance) / unoccluded(scene, point), "; seen ",
               got.direct.mean() / unoccluded(scene, point));
       CHECK(deviation > 0);
-      // a table, posts and a beam hide lights here and there, worse than one shadow's edge
+      // The table, posts and the beam hide lights here and there, which is worse than one shadow
+      // edge.
       CHECK(deviation < 2 * error * unoccluded(scene, point));
       CHECK(std::sqrt(told.variance) > deviation);
       CHECK(std::sqrt(told.variance) < 4 * deviation);
@@ -248,7 +249,7 @@ TEST_CASE("many lights: curved meshes take few rays, without bias, over matte an
       CAPTURE(point.x);
       CHECK(p_of_difference(got.direct, reference.direct) > 1e-4);
       CHECK(told_by(drawn, ray, samples, 10).rays < 20);
-      // some spread is that of the lobe's own ray
+      // Some of the spread is that of the lobe's own ray.
       CHECK(std::sqrt(got.direct.variance_of_mean() * 200) <
             (roughness > 0 ? 0.15 : 0.02) * got.direct.mean());
     }
@@ -257,7 +258,8 @@ TEST_CASE("many lights: curved meshes take few rays, without bias, over matte an
 
 namespace {
 
-// As `further` rays of a pixel are lit: points are drawn where certificates take more.
+// Lights a scene like further rays of a pixel: light samples replace certificates where those cost
+// more.
 WaveIntegrator drawn_or_certified(const PreparedScene& scene, int draws, int matte_times = 1) {
   CertifiedSettings settings = certified_settings(0.1, scene.scene.lights.size());
   settings.draws = draws;
@@ -268,7 +270,7 @@ WaveIntegrator drawn_or_certified(const PreparedScene& scene, int draws, int mat
           nullptr};
 }
 
-// Eight lights; over the floor, where x < 0, a net of many small strips.
+// A room with eight lights and a net of many small strips over the floor at x < 0.
 Scene room_with_net() {
   Scene s = room_of_lights(2);
   for (const Vec3& at : {Vec3{-2, -1, 2}, {-1, -1, 2}, {-2, 0.4f, 2}, {-1, 0.4f, 2}})
@@ -305,7 +307,7 @@ TEST_CASE("few lights: certified in the open, drawn behind a net, the same in th
   const Counters open = counted(some, ray_to(in_the_open));
   CHECK(open.mixed == 0);
   CHECK(open.lit_certified + open.dark_certified + open.masked == 8 * 64);
-  // All but the first few, each of which draws from all lights at once; its rays go up.
+  // All hits but the first few sample all lights at once; the ray goes up.
   Ray up = ray_towards(below_the_net + Vec3{0.02f, 0.01f, 0.15f}, below_the_net);
   const Counters net = counted(some, up);
   CHECK(net.mixed >= 60);
@@ -345,8 +347,8 @@ TEST_CASE("few lights: matte hits draw so many times more points, in the mean th
   }
 }
 
-// Drawn by what a light sends to a cluster as a whole, rays that chance upon a strip close by bring
-// many times what arrives: bright dots.
+// If lights were chosen by what they send to a cluster as a whole, rays that happen to hit a near
+// strip would bring many times what arrives, as bright dots.
 TEST_CASE("few lights: what is drawn is never far above what nothing hides") {
   Scene s = room_of_lights(4);
   constexpr float low = 0.03f;  // metres over the floor: a strip of 2 m × 2 cm
@@ -364,7 +366,7 @@ TEST_CASE("few lights: what is drawn is never far above what nothing hides") {
   ViewingRays rays;
   std::vector<Vec3> points;
   for (uint32_t i = 0; i < 4; ++i)
-    for (uint32_t k = 0; k < 4; ++k) {  // few, for which certificates would take more
+    for (uint32_t k = 0; k < 4; ++k) {  // few hits, for which certificates would cost more
       points.push_back({0.85f + 0.06f * float(i), -2.15f + 0.05f * float(k), 0});
       rays.rays.push_back(ray_to(points.back()));
     }
@@ -392,7 +394,7 @@ TEST_CASE("few lights: what is drawn is never far above what nothing hides") {
   CHECK(sum > 0.8 * all);
 }
 
-// Were it left to the lobe's rays alone, a ray in some would bring all of the light.
+// If it were left to the lobe's rays alone, a few rays would bring all of the light.
 TEST_CASE(
     "a lamp without certificates competes with what gloss sends, however few lights there are") {
   Scene s;

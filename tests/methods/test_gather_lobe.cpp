@@ -1,4 +1,4 @@
-// Gather rays that are drawn by the lobe of what they gather for: the same mean, and less noise.
+// Gather rays that are drawn by the lobe of their place: the same mean, and less noise.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ using namespace troffer::test;
 namespace {
 
 struct Gloss {
-  PreparedScene scene;  // whose tables it points into
+  PreparedScene scene;  // owns the tables that `specular` points into
   Bsdf specular;
   explicit Gloss(const Material& m) : scene(scene_of(m)) {
     specular = specular_part(make_bsdf(scene.bsdf_tables, {m}, {}, 0, {}, true));
@@ -42,7 +42,8 @@ struct Rays {
   double mean = 0, variance = 0, gloss = 0, gloss_variance = 0, heaviest = 0;
 };
 
-// What rays of one place bring by either part, of a sky that is brighter on one side.
+// Traces rays from one place under a sky that is brighter on one side, and returns what either part
+// gets.
 Rays gather(const GatherLobe& lobe, size_t n, uint64_t seed) {
   const Vec3 normal = normalize(Vec3{0.2f, -0.4f, 1});
   const CellHit at{{0, 0, 0}, normal, normal, 1e-5f};
@@ -81,7 +82,7 @@ TEST_CASE("rays by the lobe: the same mean as by the cosine, and gloss less nois
         const Gloss surface(material_of(kind, alpha));
         const Bsdf& gloss = surface.specular;
         const Vec3 wo{std::sqrt(1 - sqr(cosine)), 0, cosine};
-        // As much by gloss as by the rest; and none to gain, so that none is drawn by the lobe.
+        // One lobe as strong as the rest, and one with so little gloss that no ray is drawn by it.
         const GatherLobe mixed(gloss, normal, wo, 0.5f, 0.5f);
         const GatherLobe by_cosine(gloss, normal, wo, 1, 1e-6f);
         REQUIRE(by_cosine.by_lobe() == 0);
@@ -94,10 +95,10 @@ TEST_CASE("rays by the lobe: the same mean as by the cosine, and gloss less nois
         CHECK(std::abs(a.gloss - b.gloss) < 4.5 * error(a.gloss_variance, b.gloss_variance));
         CHECK(mixed.by_lobe() <= GatherLobe::most_by_lobe);
         REQUIRE(mixed.by_lobe() > 0);
-        // What a ray shows is bounded by how often the lobe is drawn.
+        // The lobe's share of rays bounds what a ray shows in gloss.
         CHECK(a.heaviest < 1.3 / double(mixed.by_lobe()));
         CHECK(a.gloss_variance < b.gloss_variance);
-        // … and what it brings to the matte part, by how often it is not.
+        // The share of other rays bounds what it brings to the matte part.
         CHECK(a.variance + sqr(a.mean) <
               1.05 * (b.variance + sqr(b.mean)) / (1 - double(mixed.by_lobe())));
       }
@@ -145,6 +146,6 @@ TEST_CASE("what all lights send, taken together, is about the sum of what each d
       CHECK(double(groups.all_light(x, n)) > sum / 6);
       CHECK(double(groups.all_light(x, n)) < 6 * sum);
     }
-  // Behind all of them, where none of them shines.
+  // Behind all of them none shines.
   CHECK(groups.all_light({6, 6, 5}, {0, 0, -1}) < 1e-3f * groups.all_light({6, 6, 0}, {0, 0, 1}));
 }

@@ -1,5 +1,5 @@
-// Gloss by certified visibility: the integrand at all of a mask's samples, and rays that tell only
-// what is hidden of it.
+// Gloss by certified visibility: the integrand at all samples of a mask, and rays that only find
+// what is hidden.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A rough floor under a panel; `leaf`: between the two, so that lists are not complete.
+// A rough floor under a panel. has_leaf: a leaf between the two makes lists incomplete.
 Scene glossy_room(MaterialKind kind, float roughness, bool has_leaf, float panel = 1) {
   Scene s;
   Material m;
@@ -49,12 +49,12 @@ TEST_CASE("gloss: an open source is hardly noisy over rough metal and coats") {
       CHECK(p_of_difference(got.direct, reference.direct, 1e-3 * reference.direct.mean()) > 1e-4);
       MESSAGE(int(kind), ", ", roughness, ": deviation of a viewing ray ",
               deviation(got.direct, 2000) / got.direct.mean());
-      // 32 points drawn from the mask: up to .028
+      // With 32 points drawn from the mask it would be up to .028.
       CHECK(deviation(got.direct, 2000) < 0.006 * got.direct.mean());
     }
 }
 
-// Then few points of it say what all do.
+// A few points of such a source then say what all say.
 TEST_CASE("gloss: a source is gentle that is small beside the lobe, however near or narrow") {
   const PreparedScene scene(glossy_room(MaterialKind::conductor, 0.3f, false));
   SourceIntegrand integrand(scene, 32, LobeCompetition(scene, 32));

@@ -1,4 +1,4 @@
-// Lights in each other's place, and lights within others: every method, and the closed form.
+// Lights that coincide, and lights inside others: every method against the closed form.
 #include <doctest/doctest.h>
 
 #include <functional>
@@ -18,9 +18,9 @@ namespace {
 struct Case {
   std::string name;
   std::function<void(Scene&)> build;
-  std::function<double(const Vec3d& x)> irradiance;  // of a floor
+  std::function<double(const Vec3d& x)> irradiance;  // at a floor
   size_t lights;
-  bool is_by_path = true;  // of panels back to back path's own rays meet either
+  bool is_by_path = true;  // false: rays of `path` may hit either of two panels back to back
 };
 
 void add_panel(Scene& s, float half, Rgb radiance, bool is_up, bool is_two_sided) {

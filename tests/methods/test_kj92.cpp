@@ -22,7 +22,7 @@ namespace {
 
 struct Kj92Options {
   TreeSamplingOptions sampling;
-  bool is_direct_only = false;  // only light that reaches surfaces straight from lights
+  bool is_direct_only = false;  // only light straight from lights
 };
 
 struct Setting {
@@ -43,7 +43,7 @@ struct Setting {
     s.selection.is_enabled = has_selection;
     return s;
   }
-  // No stop but the cap: full stratified sampling.
+  // Turns off all stops but the cap: full stratified sampling.
   Setting& full(int rays) {
     options.sampling.tree.allowed_variance = 0;
     options.sampling.tree.most_rays = rays;
@@ -51,7 +51,7 @@ struct Setting {
   }
 };
 
-// The method with all that it needs.
+// The method with everything that it needs.
 struct Kj92 {
   Kj92(Scene s, const Setting& setting)
       : scene(std::move(s)),
@@ -170,12 +170,12 @@ void add_floor(Scene& s, uint32_t material) {
 const Vec3 eye{-1.5f, 1, 1.2f};  // no source stands between it and the points
 const std::vector<Vec3> targets{{0, -0.5f, 0}, {0.2f, -2, 0}, {-2, 2, 0}};
 
-// Irradiance of an upward receiver from all sources, by quadrature over their (u,v), as far as
-// is_open says that they see each other.
+// Returns the irradiance of an upward receiver from all sources, by quadrature over their (u,v).
+// is_open: tells which points of sources the receiver sees; empty: all.
 double by_quadrature(const PreparedScene& scene, const Vec3& x, int cells,
                      const std::function<bool(const Vec3&)>& is_open = {}) {
   double sum = 0;
-  // many sources are small ones
+  // Many sources are small ones.
   cells = std::max(cells / int(std::sqrt(double(scene.scene.lights.size()))), 32);
   for (uint32_t e = 0; e < scene.scene.lights.size(); ++e) {
     const Light& light = scene.scene.lights[e];
@@ -218,8 +218,8 @@ TEST_CASE("open sources of every shape: a matte floor shows reflectance × irrad
         CAPTURE(expected);
         CAPTURE(p.total.mean());
         CAPTURE(p.total.standard_error());
-        // Selection leaves weak sources in the interpolated general value; an adaptive tree's mean
-        // is off a little too.
+        // Selection leaves weak sources to the interpolated general radiosity, and an adaptive tree
+        // has a small bias.
         CHECK(std::abs(p.total.mean() - expected) < 4 * p.total.standard_error() + 0.01 * expected);
         CHECK(p.indirect.mean() == 0);
       }
@@ -227,7 +227,7 @@ TEST_CASE("open sources of every shape: a matte floor shows reflectance × irrad
 }
 
 TEST_CASE("a source half hidden by an edge: the bias, measured") {
-  // A screen whose edge cuts the square source as seen from x: at `cut` of its width.
+  // The edge of a screen cuts the square source as seen from x, at `cut` of its width.
   double worst = 0;
   std::string table;
   for (const float cut : {-0.4f, -0.15f, 0.0f, 0.03f, 0.3f, 0.45f})
@@ -235,12 +235,12 @@ TEST_CASE("a source half hidden by an edge: the bias, measured") {
       Scene s;
       const uint32_t grey = add_diffuse(s, Rgb{0.5f});
       add_ceiling_light(s, 1, 2, Rgb{5});
-      // The screen lies halfway: its edge runs through (cut/2, 0, 1) seen from the origin.
+      // The screen lies halfway: its edge runs through (cut/2, 0, 1) as seen from the origin.
       const Vec3 along = normalize(Vec3{slope, 1, 0}) * 3, across = Vec3{along.y, -along.x, 0};
       const Vec3 on{cut / 2, 0, 1};
       add_quad(s, grey, {on - along, on - along + across, on + along + across, on + along});
       add_floor(s, grey);
-      const auto is_open = [&](const Vec3& y) {  // the light's point, seen from the origin
+      const auto is_open = [&](const Vec3& y) {  // point of the light, seen from the origin
         return dot(y * 0.5f - on, normalize(across)) < 0;
       };
       const PreparedScene prepared(s);
@@ -259,7 +259,8 @@ TEST_CASE("a source half hidden by an edge: the bias, measured") {
                       double(cut), double(slope), has_coherence, expected / open, bias,
                       p.total.standard_error() / open);
         table += line;
-        // Where the first rays all fall on one side of the edge, a tree by itself stops at once.
+        // If the first rays all fall on one side of the edge, a tree without coherence stops at
+        // once.
         CHECK(std::abs(bias) < (has_coherence ? 0.005 : 0.05));
       }
     }
@@ -296,7 +297,7 @@ TEST_CASE(
   setting.options.sampling.uses_ratio = true;
   Scene open;
   const uint32_t grey = add_diffuse(open, Rgb{0.5f});
-  // A large source close by: values of rays to it differ by far.
+  // A large source close by: values of its rays differ greatly.
   make_light(
       open,
       add_quad(open, grey, {Vec3{-1, -1, 0.05f}, {-1, 1, 0.05f}, {1, 1, 0.05f}, {1, -1, 0.05f}}),
@@ -353,7 +354,7 @@ TEST_CASE("direct light only: as the fixed method says, on surfaces of every kin
       const uint32_t white = add_diffuse(s, Rgb{0.7f});
       lights[light].add(s);
       add_floor(s, glossy);
-      // A shelf that hides part of the light, and that the floor mirrors.
+      // A shelf hides a part of the light, and the floor mirrors it.
       add_quad(s, white, {Vec3{0.2f, -3, 1}, {1.4f, -3, 1}, {1.4f, 3, 1}, {0.2f, 3, 1}});
       const Kj92 kj(s, Setting::direct(false));
       const WaveIntegrator fixed = fixed_integrator(kj.scene, 16);
@@ -366,7 +367,7 @@ TEST_CASE("direct light only: as the fixed method says, on surfaces of every kin
         CAPTURE(x.x);
         CAPTURE(a.total.mean());
         CAPTURE(b.total.mean());
-        // 1 %: the trees' own bias.
+        // 1 % for the bias of trees.
         CHECK(p_of_difference(a.total, b.total, 0.01 * b.total.mean() + 1e-5) > significance);
         CHECK(a.indirect.mean() == 0);
       }
@@ -437,13 +438,13 @@ TEST_CASE("a furnace: every surface emits what it absorbs, and all that is seen 
 
 namespace {
 
-// A floor lit by nothing but a bright patch of wall, on which a hidden spot shines, and a post that
-// throws a shadow in that light.
+// A floor lit only by a bright patch of wall, on which a hidden spot shines, and a post that casts
+// a shadow in that light.
 Scene bright_wall(int columns) {
   Scene s;
   const uint32_t white = add_diffuse(s, Rgb{0.8f}), grey = add_diffuse(s, Rgb{0.4f});
   const uint32_t black = add_diffuse(s, Rgb{0});
-  // The wall x = 0, facing +x; cut into columns that bend it into an arc where there are several.
+  // The wall x = 0, facing +x. Several columns bend it into an arc.
   Mesh wall;
   for (int i = 0; i <= columns; ++i) {
     const float t = float(i) / float(columns) - 0.5f;
@@ -457,13 +458,13 @@ Scene bright_wall(int columns) {
   }
   wall.material = white;
   s.meshes.push_back(wall);
-  // The lamp shines at the wall from close by and is dark behind.
+  // The lamp shines at the wall from close by and is dark at its back.
   const uint32_t lamp = add_quad(
       s, black,
       {Vec3{0.5f, -0.3f, 1.2f}, {0.5f, -0.3f, 1.6f}, {0.5f, 0.3f, 1.6f}, {0.5f, 0.3f, 1.2f}});
   make_light(s, lamp, Rgb{50});
   add_quad(s, grey, {Vec3{-0.5f, -3, 0}, {5, -3, 0}, {5, 3, 0}, {-0.5f, 3, 0}});
-  // A screen between wall and floor.
+  // A screen between the wall and the floor.
   add_quad(s, black,
            {Vec3{1.2f, -0.5f, 0}, {1.2f, 0.5f, 0}, {1.2f, 0.5f, 0.6f}, {1.2f, -0.5f, 0.6f}});
   return s;
@@ -485,7 +486,7 @@ TEST_CASE("a bright patch throws a shadow, and its light counts once") {
     double all = 0, reference = 0, squares = 0, plain_squares = 0;
     float sampled = 0;
     std::string table;
-    for (float x = 0.9f; x < 3.2f; x += 0.2f)  // the screen stands between two of them
+    for (float x = 0.9f; x < 3.2f; x += 0.2f)  // the screen stands between two of these
       for (const float y : {-0.8f, 0.05f, 0.4f}) {
         const Ray ray = ray_towards({x, y + 0.1f, 0.9f}, {x, y, 0});
         const double a = probe(kj.integrator, ray, 16, 8).total.mean();
@@ -538,7 +539,7 @@ TEST_CASE("mirrors and gloss show what path shows, in a room with indirect light
     Setting setting;
     const Kj92 kj(std::move(s), setting);
     const PathIntegrator path(kj.scene, PathOptions{});
-    // Towards the panel; x = 0 shows the lamp in it.
+    // Rays towards the panel; at x = 0 the lamp shows in it.
     for (const Vec3& x : {Vec3{0, 1.9f, 1.75f}, {0.15f, 1.9f, 1.1f}, {-0.1f, 1.9f, 1.4f}}) {
       const Ray ray = ray_towards({0.1f, -1, 1.3f}, x);
       const Probed a = probe(kj.integrator, ray, 32, 12), b = probe(path, ray, 256, 12);

@@ -16,8 +16,8 @@ namespace {
 const Vec3 eye{0.3f, 1, 1.2f};
 const std::vector<Vec3> targets{{0, -0.5f, 0}, {0.9f, 0.2f, 0}, {-1.5f, 1, 0}};
 
-// Rectangles over the floor z = 0, none in the way of another: a near panel, a far small one, one
-// that shines both ways, one upright that the floor's plane cuts.
+// Adds one of several rectangles above the floor z = 0, none of which hides another: a near panel,
+// a small one far away, one that shines both ways, and an upright one that the floor's plane cuts.
 void add_light(Scene& s, uint32_t black, int which) {
   const Vec3 a{6, 6, 4}, x{0.05f, 0, 0}, y{0, -0.05f, 0};
   switch (which) {
@@ -40,7 +40,7 @@ Scene floor_with(const std::vector<int>& lights, const Material& floor) {
   const uint32_t black = add_diffuse(s, Rgb{0}), material = add_material(s, floor);
   for (const int which : lights) add_light(s, black, which);
   add_quad(s, material, {Vec3{-20, -20, 0}, {20, -20, 0}, {20, 20, 0}, {-20, 20, 0}});
-  // Something in the way of some of it.
+  // Hides some of the light.
   add_quad(s, black,
            {Vec3{0.4f, 0.4f, 1.6f}, {0.4f, 0.9f, 1.6f}, {0.9f, 0.9f, 1.6f}, {0.9f, 0.4f, 1.6f}});
   return s;
@@ -87,7 +87,7 @@ TEST_CASE("lights together send what they send alone") {
     }
 }
 
-// Four equal panels seen in full: what is left of the noise is where on a panel the point lies.
+// Four equal panels in full view: the remaining noise comes from the choice of points on a panel.
 TEST_CASE("a ray goes to one of several lights, and brings the light of all") {
   Scene s;
   const uint32_t black = add_diffuse(s, Rgb{0}), grey = add_diffuse(s, Rgb{0.5f});
@@ -98,6 +98,6 @@ TEST_CASE("a ray goes to one of several lights, and brings the light of all") {
           Rgb{x < 0 ? 5.0f : 1.0f}, false);
   add_quad(s, grey, {Vec3{-20, -20, 0}, {20, -20, 0}, {20, 20, 0}, {-20, 20, 0}});
   const Moments one = direct_light(std::move(s), {0.4f, 0.3f, 0}, 1, 4000);
-  // Of single values, by the error of the mean of 4000.
+  // Spread of single values, from the error of the mean of 4000.
   CHECK(one.standard_error() * std::sqrt(4000.0) < 0.2 * one.mean());
 }

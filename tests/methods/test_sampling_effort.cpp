@@ -1,4 +1,4 @@
-// Rays of pixels that differ by what they meet: lit by fewer points, without bias.
+// Sampling effort: rays of pixels that meet different things get fewer light samples, without bias.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A matte or a glossy floor below n lights and a beam, under a sky if it is asked for.
+// A matte or glossy floor below n lights and a beam, with or without a sky.
 Scene floor_below(int n, bool is_glossy, bool has_sky) {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
@@ -32,7 +32,7 @@ Scene floor_below(int n, bool is_glossy, bool has_sky) {
   return s;
 }
 
-// As further rays of a pixel are lit where there are cells.
+// Lights a scene like further rays of a pixel in a picture by cells.
 WaveIntegrator drawing(const PreparedScene& scene) {
   CertifiedSettings settings = certified_settings(0.1, scene.scene.lights.size());
   settings.draws = 16;
@@ -46,7 +46,8 @@ WaveIntegrator drawing(const PreparedScene& scene) {
 }  // namespace
 
 TEST_CASE("with thrift rays get fewer points, and in the mean the same light") {
-  constexpr float typical = 0.5f;  // of a picture: not all points of the sky are asked for
+  constexpr float typical =
+      0.5f;  // luminance of the picture: not all points of the sky are sampled
   const Ray ray = ray_towards({1.2f, 0.3f, 0.9f}, {0.9f, 0.1f, 0});
   for (const int lights : {0, 5, 40})  // none, few and many
     for (const bool is_glossy : {false, true})
@@ -73,7 +74,8 @@ TEST_CASE("with thrift rays get fewer points, and in the mean the same light") {
           last = some.shadow_rays;
           if (lights == 0)
             CHECK(double(some.shadow_rays) / 200 < 0.5 * double(usual.shadow_rays) / 60);
-          // Lights are drawn by so many points a ray, of which those that send nothing cast none.
+          // Each ray samples this many points of lights; points that send nothing cast no shadow
+          // ray.
           if (!has_sky) {
             CHECK(some.shadow_rays <= 200 * 64 * (is_glossy ? 16 : 32) / effort_divisor);
             CHECK(some.shadow_rays > 200 * 64 * (is_glossy ? 8 : 16) / effort_divisor);

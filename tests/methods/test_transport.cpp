@@ -18,8 +18,8 @@ PathIntegrator path(const PreparedScene& scene, int depth = -1) {
   return PathIntegrator(scene, o);
 }
 
-// A room whose six walls shine with (1 - rho) L0, so that radiance is L0 everywhere, and what
-// stands in it absorbs nothing.
+// A room whose six walls emit (1 - rho) L0, so that radiance is L0 everywhere. Things in it absorb
+// nothing.
 constexpr float L0 = 2;
 Scene furnace(float rho) {
   Scene s;
@@ -58,8 +58,8 @@ TEST_CASE("a mirror shows a lit floor as it is") {
   add_quad(s, grey, {Vec3{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}});
   add_ceiling_light(s, 1, 2, Rgb{3});
   const PreparedScene scene(std::move(s));
-  // By way of (3, 0, 1) to (1, 0, 0), which the source's mirror image does not light: caustics
-  // are left to paths that meet the source by chance.
+  // By way of (3, 0, 1) to (1, 0, 0), which the source's mirror image does not light: caustics are
+  // left to paths that meet the source by chance.
   const Ray ray = ray_towards({1, 0, 2}, {3, 0, 1});
   const double expected = 0.5 * 3 / pi * irradiance(scene.primitives, 0, {1, 0, 0}, {0, 0, 1});
   const WaveIntegrator fixed = troffer::test::fixed_integrator(scene, 4);

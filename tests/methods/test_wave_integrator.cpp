@@ -1,4 +1,4 @@
-// The driver of waves: which hits it hands to the two parts of a method, when, and what it adds.
+// The driver of waves: which hits it gives to the two parts of a method, when, and what it adds.
 #include "transport/wave_integrator.h"
 
 #include <doctest/doctest.h>
@@ -13,7 +13,7 @@ using namespace troffer::test;
 
 namespace {
 
-// What the driver did with a part of a method.
+// Log of what the driver did with one part of a method.
 struct Log {
   std::map<uint32_t, int> hits;  // by index of the viewing ray
   std::vector<std::string> calls;
@@ -77,7 +77,7 @@ struct LoggedIndirect final : IndirectLight {
   Log& log;
 };
 
-// A matte floor, to the right of it a mirror that shows a matte wall.
+// A matte floor, and to its right a mirror that shows a matte wall.
 Scene floor_and_mirror() {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
@@ -87,7 +87,7 @@ Scene floor_and_mirror() {
   return s;
 }
 
-// Rays from above, every third to the mirror, every sixth past everything.
+// Returns rays from above: every third meets the mirror, every sixth nothing.
 ViewingRays rays_down(uint32_t n) {
   ViewingRays rays;
   for (uint32_t i = 0; i < n; ++i) {
