@@ -59,8 +59,9 @@ bool lies_on(const AssessedSurface& surface, const Vec2d& place);
 // the surface. In the file's coordinates.
 Vec3d middle_of(const AssessedSurface& surface);
 
-// The surface that triangles of a plane with the unit normal n make; name, kind and profile are not
-// set. Its rim is that of the triangles, which must share corners then, or the one that is known.
+// Builds a surface from triangles in a plane with the unit normal n; name, kind and profile stay
+// unset. The rim is `known_rim` if given. Otherwise it follows from the triangles, which must then
+// share corners.
 AssessedSurface surface_of_triangles(const std::vector<std::array<Vec3d, 3>>& triangles,
                                      const Vec3d& n,
                                      const std::vector<std::array<Vec3d, 2>>& known_rim = {});
