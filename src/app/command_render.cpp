@@ -77,7 +77,7 @@ struct Seconds {
   double import = 0, build = 0, preprocess_cpu = 0, render = 0, render_cpu = 0, write = 0;
 };
 
-// Name of how a rendering ended, for the statistics.
+// Returns the name of a rendering's end, for the statistics.
 const char* name_of(RenderEnd end) {
   switch (end) {
     case RenderEnd::complete:

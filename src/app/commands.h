@@ -164,7 +164,7 @@ int check_and_bake(const CLI::App& command_line, BakeCommand command);
 // Called with the scene without images, before they are read; not called for scenes without images.
 using ShowShapes = std::function<void(const Scene& scene)>;
 
-// Which direction is up, for a command that loads a scene.
+// Up direction of a scene, for the command that loads it.
 struct UpUse {
   bool is_needed = false;  // true if the command itself needs it, not only its lights
   UpDecision decision;     // set by load_scene()

@@ -128,7 +128,7 @@ void add_node(const PreparedScene& scene, const Vec3d& up, const SurfaceRequest&
   }
   if (faces.empty())
     throw UsageError("--surface: '" + r.node + "' is not flat and has no face that looks upward");
-  // Where a slab is a floor, it is assessed within the walls of its rooms.
+  // A slab that is a floor is assessed within the walls of its rooms.
   std::vector<AssessedSurface> surfaces = floors_of_node(floors, faces);
   if (surfaces.empty())
     for (const FlatFace& f : faces) {

@@ -21,7 +21,7 @@ struct InputHash {
   std::string sha256;
 };
 
-// How the report was made. Names may contain any bytes.
+// Program, inputs and settings of a report. Names may contain any bytes.
 struct ReportInfo {
   std::string title;
   std::string date;  // as given; empty: none

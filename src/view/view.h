@@ -8,7 +8,7 @@
 
 namespace troffer {
 
-// How to start the page.
+// Settings for the start of the page.
 struct ViewStart {
   uint16_t port = 0;        // 0: any free port
   std::string tev;          // HOST:PORT of a tev that also gets the pictures; empty: none

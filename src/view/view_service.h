@@ -15,7 +15,7 @@
 
 namespace troffer {
 
-// What the page shows at the start.
+// Initial state of the page.
 struct ViewSettings {
   Camera camera;              // first camera
   int width = 0, height = 0;  // size of the picture; 0: moderate_size() of the camera
