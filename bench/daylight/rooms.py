@@ -105,7 +105,7 @@ SCENES = {'window': lambda: room(window=(1, 3, .9, 2.1)), 'blinds': blinds,
 
 
 def image():
-    """An environment image, a PFM of 256 x 128: a sun of a few texels in the south-east, 35 degrees high."""
+    """Surroundings as a PFM of 256 x 128: a sun of a few texels, 35 degrees high in the south-east."""
     values = array.array('f')
     for row in range(128):
         altitude = 180 * (row + .5) / 128 - 90  # the lowest row comes first
