@@ -1,10 +1,10 @@
-"""A room of a .blend file as glTF, under panels: the rooms of docs/results/public-scenes.md.
+"""Exports a room of a .blend file as glTF, under panels: the rooms of docs/results/public-scenes.md.
 
   blender -b ROOM.blend --python bench/export_room.py -- OUT.glb X0 Y0 X1 Y1 CEILING STEP
 
-The room's own lights and cameras go. A grey ceiling at height CEILING over [X0,X1] x [Y0,Y1] (metres,
-z up) carries panels of .6 m, about STEP apart, 2 cm below it, that shine from both sides. The camera
-stands where it sees most objects from eye height, looking a little down.
+The room's own lights and cameras are removed. A grey ceiling at height CEILING over [X0,X1] x [Y0,Y1]
+(metres, z up) carries panels of .6 m, about STEP apart and 2 cm below it, which emit on both sides.
+The camera is placed where it sees most objects from eye height, looking slightly down.
 
   apartment               -5.7 -3.8 2.7 6 2.5 1.3
   tum_kitchen             0 -3 8.2 8.7 2.72 2.3
@@ -21,7 +21,7 @@ from mathutils import Vector
 field_of_view = math.radians(60)
 eye_height = 1.6
 looks_down = 0.2  # radians
-least_distance = 0.5  # to the nearest thing in sight
+least_distance = 0.5  # to the nearest visible object
 
 
 def quad(scene, name, x0, y0, x1, y1, z, material):
@@ -41,7 +41,7 @@ def material(name, **inputs):
 
 
 def objects_seen(scene, graph, eye, forward):
-    """How many, and how far away the nearest thing is."""
+    """Returns the number of visible objects and the distance of the nearest."""
     right = forward.cross(Vector((0, 0, 1))).normalized()
     up = right.cross(forward)
     reach = math.tan(field_of_view / 2) / 10

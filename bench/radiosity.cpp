@@ -1,6 +1,6 @@
-// Time, memory and accuracy of the radiosity preprocessing at its default settings, on two threads.
-// Accuracy: against a solution on the same mesh at a third of the error per transfer and a fifth of
-// the unshot power, each with its ambient estimate.
+// Measures time, memory and accuracy of the radiosity preprocessing at default settings, on two
+// threads. The accuracy refers to a solution on the same mesh with a third of the error per
+// transfer and a fifth of the unshot power. Both include their ambient estimate.
 //
 //   bench_radiosity [SCENE…]     (default: scenes/kj92room and scenes/modern-hall of the
 //   repository)

@@ -1,11 +1,11 @@
-// How far a radiosity solution is from the path tracer's irradiance, interpolated at places that a
-// camera sees and at places all over the surfaces, for several settings on the same places. Time is
-// that of the preprocessing on two threads, in seconds of processor time.
+// Compares radiosity solutions with the path tracer's irradiance. Values are interpolated at places
+// that a camera sees and at places all over the surfaces, for several settings. Times are processor
+// seconds of the preprocessing on two threads.
 //
 //   bench_radiosity_accuracy SCENE [--places N] [--spp N] [VARIANT…]
 //
 // A variant is a list such as element=0.5,patch=2,unshot=0.01,tolerance=0.003,rays=64,light=64;
-// "default" is the default. Light that comes by way of mirrors or glass is missing from radiosity.
+// "default" is the default. Radiosity lacks light by way of mirrors or glass.
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -32,7 +32,7 @@ namespace {
 
 constexpr int threads = 2;
 
-// Of all threads: tells more than wall time on a machine that does other things too.
+// Processor time of all threads, which other programs do not affect.
 double cpu_seconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -41,7 +41,7 @@ double cpu_seconds() {
 
 struct Place {
   Hit hit;
-  Vec3 position, normal;  // the normal on the side that is looked at
+  Vec3 position, normal;  // normal on the visible side
   bool is_back = false;
 };
 
@@ -71,7 +71,7 @@ std::vector<Place> visible_places(const PreparedScene& scene, int count) {
   return places;
 }
 
-// By area, triangles only; each side with equal chance.
+// Returns places spread over the triangles by area, on either side with equal probability.
 std::vector<Place> surface_places(const PreparedScene& scene, int count) {
   std::vector<Place> places;
   std::vector<double> sums;
@@ -114,7 +114,7 @@ std::vector<Place> surface_places(const PreparedScene& scene, int count) {
   return places;
 }
 
-// Irradiance by the path tracer, luminance; places that no light reaches are left out.
+// Returns the path tracer's irradiance (luminance). Places without light are removed.
 std::vector<double> reference(const PreparedScene& scene, std::vector<Place>& places, int spp,
                               double& noise) {
   std::vector<MeasuringPoint> points;

@@ -1,4 +1,4 @@
-# cmake -D OUTPUT=FILE.cpp -D FILES=a;b -P embed.cmake: text files as strings of a C++ source
+# cmake -D OUTPUT=FILE.cpp -D FILES=a;b -P embed.cmake: writes text files as strings of a C++ source
 # (src/view/page_files.h).
 cmake_policy(VERSION 3.25)
 set(_rows "")
@@ -6,7 +6,7 @@ foreach(_file IN LISTS FILES)
   get_filename_component(_name ${_file} NAME)
   file(READ ${_file} _hex HEX)
   string(REGEX REPLACE "(..)" "\\\\x\\1" _bytes "${_hex}")
-  # Lines of some length, which compilers like better than one.
+  # Compilers handle several short lines better than one long string.
   string(REGEX REPLACE "((\\\\x..)(\\\\x..)?(\\\\x..)?(\\\\x..)?(\\\\x..)?(\\\\x..)?(\\\\x..)?(\\\\x..)?)"
     "\"\\1\"\n" _lines "${_bytes}")
   string(LENGTH "${_hex}" _digits)

@@ -1,5 +1,5 @@
-# What `cmake --install` and `cpack` hand out: the program with its manual and completion, the
-# library as troffer::<room> with headers (find_package(troffer)), the Python module.
+# Files of `cmake --install` and `cpack`: the program with manual and completion, the library as
+# troffer::<room> with headers (find_package(troffer)), the Python module.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -23,7 +23,7 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/troffer-config-version.cmak
 install(FILES ${CMAKE_BINARY_DIR}/troffer-config.cmake
   ${CMAKE_BINARY_DIR}/troffer-config-version.cmake DESTINATION ${_package})
 
-# Manual pages and completion say what the program says of itself.
+# Manual pages and completion come from the program's own help.
 if(Python_Interpreter_FOUND)
   set(_manual ${CMAKE_BINARY_DIR}/manual)
   add_custom_command(OUTPUT ${_manual}/troffer.1
@@ -41,7 +41,7 @@ if(Python_Interpreter_FOUND)
     DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()
 if(TROFFER_MPI)
-  install(TARGETS troffer-mpi COMPONENT mpi)  # a package of its own: nobody else needs MPI
+  install(TARGETS troffer-mpi COMPONENT mpi)  # a separate package, since only its users need MPI
 endif()
 if(TROFFER_PYTHON)
   install(TARGETS troffer_module DESTINATION lib/python3/dist-packages)

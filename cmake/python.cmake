@@ -1,6 +1,5 @@
-# The Python module (import troffer), where pybind11 is installed. It is for the interpreter that
-# Python_EXECUTABLE names: Debian's own unless told otherwise, since that is the one that Debian's
-# numpy is for.
+# Builds the Python module (import troffer) if pybind11 is installed. It is for the interpreter
+# Python_EXECUTABLE, by default Debian's own, which Debian's numpy belongs to.
 
 if(EXISTS /usr/bin/python3 AND NOT DEFINED Python_EXECUTABLE)
   set(Python_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "Interpreter the module is for")
@@ -15,8 +14,7 @@ option(TROFFER_PYTHON "Build the Python module (pybind11)" ${_can_build})
 if(TROFFER_PYTHON)
   set(PYBIND11_FINDPYTHON ON)
   find_package(pybind11 CONFIG REQUIRED)
-  # All that the module is linked from must run at any place in memory; nobody puts functions of
-  # their own in place of ours.
+  # Code in the module must be position independent. No other library replaces its functions.
   set(CMAKE_POSITION_INDEPENDENT_CODE ON)
   add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
 endif()

@@ -1,5 +1,5 @@
-# Makes one static library troffer_<room> per row of layers.txt from
-# the .cpp files in src/<room>/ and its subfolders, linked with just the rooms that its row names.
+# Makes one static library troffer_<room> per row of layers.txt from the .cpp files in src/<room>/
+# and its subfolders. It links exactly the rooms that its row names.
 
 file(STRINGS ${CMAKE_SOURCE_DIR}/layers.txt _rows REGEX "^[a-z]")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/layers.txt)
@@ -35,7 +35,7 @@ foreach(_row IN LISTS _rows)
   endforeach()
 endforeach()
 
-# An external library that only this room may include.
+# Links an external library that only this room may include.
 function(troffer_room_uses room)
   get_target_property(_type troffer_${room} TYPE)
   if(_type STREQUAL "INTERFACE_LIBRARY")

@@ -1,6 +1,6 @@
-# What nearly every source includes is compiled once for all rooms: half of a source's time went to
-# that. Sources still include what they use: builds with a compiler cache, which do not keep what
-# was compiled so, do without.
+# Compiles headers that nearly all sources include once for all rooms, because they take half of a
+# source's compile time. Sources still include what they use: builds with a compiler cache, which
+# cannot cache such headers, do without.
 function(troffer_shared_headers first)
   if(CMAKE_CXX_COMPILER_LAUNCHER)
     return()
@@ -16,7 +16,7 @@ function(troffer_shared_headers first)
     if(NOT _room STREQUAL first)
       target_precompile_headers(troffer_${_room} REUSE_FROM troffer_${first})
     endif()
-    # GCC 12 forgets that these are a system's headers, and warns of sound strings.
+    # GCC 12 does not treat these as system headers, and warns of correct strings.
     target_compile_options(troffer_${_room} PRIVATE
       $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread>)
   endforeach()

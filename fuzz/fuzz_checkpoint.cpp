@@ -1,6 +1,6 @@
-// Feeds a rendering a checkpoint that libFuzzer makes: its sums are right, what it says is not. It
-// is refused by InputError, or gone on from to some picture. Bytes: the method, then chunks, each
-// after its size in two bytes.
+// Resumes a rendering from a checkpoint that libFuzzer makes: its checksums are right, its contents
+// arbitrary. It must be refused with InputError, or lead to some picture. Bytes: the method, then
+// chunks, each after its size in two bytes.
 #include <unistd.h>
 
 #include <cstdint>

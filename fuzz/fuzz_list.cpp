@@ -1,7 +1,7 @@
-// Feeds a reader of lists what libFuzzer makes, and what it read to those who use it: weather
-// files, lists of luminaires and of points, what a report assesses, parts of a picture. Refused by
-// InputError, or by UsageError where the numbers make no sense together; what is read has finite
-// numbers.
+// Feeds libFuzzer's data to a reader of lists, and the result to its users: weather files, lists of
+// luminaires and points, files for `report`, parts of a picture. They may be refused with
+// InputError, or with UsageError if the numbers contradict each other. Accepted numbers must be
+// finite.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -31,7 +31,7 @@ void check_finite(const Vec3d& v) {
   if (!std::isfinite(v.x + v.y + v.z)) std::abort();
 }
 
-// What lights have can be used: they are prepared, and shine on a point.
+// Checks that lights are usable: prepares them and lights a point.
 void light_up(Scene scene) {
   for (const Light& e : scene.lights) {
     check_finite(Vec3d(e.position));

@@ -1,5 +1,5 @@
-// Feeds a reader what libFuzzer makes, as a file with nothing beside it: it may refuse by
-// InputError and nothing else. What is read in pieces has to come out as if it were read in one.
+// Feeds libFuzzer's data to a reader, as a file without companions. It may refuse with InputError
+// only. Reading in pieces must give the same result as reading at once.
 #include <cstdint>
 #include <cstdlib>
 #include <string>
@@ -37,7 +37,7 @@ void append_mesh(std::string& out, const Mesh& mesh) {
   append_bytes(out, mesh.triangles);
 }
 
-// All that comes of a file: what it is refused with, or its meshes and warnings.
+// Returns the outcome of reading a file: the error, or its meshes and warnings.
 std::string outcome(const std::string& path, size_t piece_bytes) {
   const PieceReading how{piece_bytes, {}};
   std::string out;

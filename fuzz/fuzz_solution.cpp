@@ -1,6 +1,6 @@
 // Feeds a rendering a radiosity solution, or cells, that libFuzzer makes: a file of this very scene
-// whose sum is right, and whose contents are not. Refused by InputError, or used for some light.
-// Bytes: pieces, each after its place in the file (two bytes) and its size (one).
+// with a right checksum and arbitrary contents. It must be refused with InputError, or give some
+// light. Bytes: pieces, each after its place in the file (two bytes) and its size (one).
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -21,7 +21,7 @@ namespace {
 using namespace troffer;
 
 constexpr bool is_radiosity = std::string_view(FUZZ_ENDING) == "trad";
-// The sum stands at the end of the header.
+// The checksum is at the end of the header.
 constexpr size_t header_size = is_radiosity ? 208 : 80;
 const StopFlag never = false;
 
@@ -71,7 +71,7 @@ struct Target {
     return file;
   }
 
-  // A point by the one or the other.
+  // Measures a point with the solution or the cells.
   void use(std::span<const uint8_t> file) const {
     MeasureOptions o;
     o.error = 0.5;

@@ -1,5 +1,5 @@
-// Feeds the page's service requests that libFuzzer makes, as the server hands them on: lines of
-// "get NAME KEY=VALUE…" and "post NAME BODY". Refused by UsageError, or answered.
+// Feeds requests that libFuzzer makes to the page's service, as the server passes them on: lines of
+// "get NAME KEY=VALUE…" and "post NAME BODY". They must be refused with UsageError, or answered.
 #include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -29,7 +29,7 @@ Scene lit_room() {
   return s;
 }
 
-// Pictures that are asked for stay small, or each input would take minutes.
+// Limits the size of pictures, so that each input is fast.
 std::string with_small_picture(const std::string& body) {
   constexpr int most = 8;
   nlohmann::json j = nlohmann::json::parse(body, nullptr, false);
@@ -69,7 +69,7 @@ class Target {
     MeasuringQueue desk(measuring_);
     Painter painter(board, settings_.options, nullptr);
     ViewService service(lighting_, settings_, board, painter, desk);
-    constexpr int most = 16;  // the desk takes no more than so many at a time, four times over
+    constexpr int most = 16;  // the measuring queue allows four times as many waiting tasks
     std::istringstream in(lines);
     std::string line;
     for (int n = 0; n < most && std::getline(in, line); ++n) {

@@ -1,5 +1,5 @@
-// Readers take paths: a folder of this process, in memory where there is /dev/shm, for what
-// libFuzzer makes and what stands beside it.
+// A folder for the inputs of one process, since readers take paths. It is in memory if /dev/shm
+// exists, and holds libFuzzer's data and other files that a reader needs.
 #pragma once
 
 #include <unistd.h>
@@ -29,7 +29,7 @@ class InputFolder {
 
   std::string path() const { return path_.string(); }
   std::string file(const std::string& name) const { return (path_ / name).string(); }
-  // The path of the file.
+  // Writes a file and returns its path.
   std::string write(const std::string& name, const void* data, size_t size) const {
     const std::string to = file(name);
     std::FILE* const out = std::fopen(to.c_str(), "wb");

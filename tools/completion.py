@@ -1,4 +1,4 @@
-"""Completion for bash, zsh and fish: commands, options, their values and the files they take."""
+"""Writes completion for bash, zsh and fish: commands, options, their values and the files they take."""
 import program_help
 
 
@@ -11,7 +11,7 @@ def takes_files(option):
 
 
 def positional_endings(command):
-    """Endings of a command's positional files; none: it has no positional."""
+    """Returns the endings of a command's positional files; empty if it has no positional."""
     return sorted({e for o in program_help.options(command) if o['is_positional']
                    for e in o['files']})
 
@@ -63,7 +63,7 @@ def bash(help_):
             elif takes_files(o):
                 action = ' '.join(['_troffer_files', *files_of(o)])
             else:
-                action = ':'  # a number or a name: nothing to offer
+                action = ':'  # a number or a name: nothing to complete
             for n in o['names']:
                 values.setdefault(action, []).append(f'{name}\\ {n}')
         names = [n for o in program_help.options(command) if not o['is_positional']

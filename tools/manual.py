@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Manual pages and shell completion from what the program says of itself.
+"""Makes manual pages and shell completion from the program's help.
 
 manual.py TROFFER VERSION FOLDER: writes troffer.1, troffer-COMMAND.1, troffer.bash, _troffer (zsh)
-and troffer.fish there.
+and troffer.fish to FOLDER.
 """
 import pathlib
 import sys
 
-sys.dont_write_bytecode = True  # the source folder stays as it is
+sys.dont_write_bytecode = True  # the source folder stays unchanged
 
 import completion
 import program_help
@@ -54,7 +54,7 @@ def main():
                        ('troffer.fish', completion.fish)):
         (folder / file).write_text(make(help_), encoding='utf-8')
     commands = {'Commands': [(f"\\fB{c['name']}\\fR", c['summary']) for c in help_['commands']]}
-    # Last: it says that all is there.
+    # Written last, because the build takes this file as a sign that all are complete.
     (folder / 'troffer.1').write_text(
         page('troffer', version, help_['summary'], 'troffer COMMAND [OPTIONS]', commands, others),
         encoding='utf-8')

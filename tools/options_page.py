@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""docs/reference/options.md from what the program says of itself.
+"""Makes docs/reference/options.md from the program's help.
 
 options_page.py TROFFER FILE: writes the page.
-options_page.py --check TROFFER FILE: fails where the page is not what would be written.
+options_page.py --check TROFFER FILE: fails if the page is out of date.
 """
 import pathlib
 import sys
 
-sys.dont_write_bytecode = True  # the source folder stays as it is
+sys.dont_write_bytecode = True  # the source folder stays unchanged
 
 import program_help
 
@@ -17,7 +17,7 @@ def cell(text):
 
 
 def values(option):
-    """What the option takes: its choices, its range or its files."""
+    """Returns what the option takes: its choices, its range or its files."""
     if option['choices']:
         return ', '.join(f'`{c}`' for c in option['choices'])
     if option['range']:

@@ -1,4 +1,4 @@
-"""The options of troffer as the program itself lists them (`troffer help --json`)."""
+"""Reads the options of troffer from the program itself (`troffer help --json`)."""
 import json
 import subprocess
 
@@ -10,7 +10,7 @@ def read(program):
 
 
 def options(command):
-    """All options of a command, positionals included."""
+    """Returns all options of a command, positionals included."""
     return [o for group in command['groups'] for o in group['options']]
 
 

@@ -1,6 +1,6 @@
-# Sourced by ./demo and ./check: makes sure that the Debian packages troffer is built from are
-# installed. As root, or with sudo that asks for no password, it installs what is missing; else it
-# names the command and ends.
+# Sourced by ./demo and ./check: makes sure that the Debian packages for building troffer are
+# installed. As root, or with sudo without a password, it installs missing ones; otherwise it prints
+# the command and exits.
 
 troffer_packages="
   g++ cmake ninja-build

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Rooms lit by the sky, written as pbrt-v4 files (metres, z up): rooms.py FOLDER"""
+"""Writes rooms lit by the sky as pbrt-v4 files (metres, z up): rooms.py FOLDER"""
 import array
 import math
 import pathlib
@@ -29,11 +29,11 @@ def head(eye, at, fov):
             'WorldBegin\nMaterial "diffuse" "rgb reflectance" [.6 .6 .6]\n')
 
 
-X, Y, Z, T = 5, 4, 2.7, 0.2  # a room, and how thick its walls are
+X, Y, Z, T = 5, 4, 2.7, 0.2  # size of a room, thickness of its walls
 
 
 def room(window=None, skylight=None):
-    """Walls are boxes; `window`: y0, y1, z0, z1 in the wall at X; `skylight`: x0, x1, y0, y1."""
+    """A room of boxes. window: y0, y1, z0, z1 in the wall at X; skylight: x0, x1, y0, y1."""
     s = head((.4, .5, 1.7), (3.5, 2.6, .8), 70)
     s += box((-T, -T, -T), (X + T, Y + T, 0)) + box((-T, -T, 0), (0, Y + T, Z))
     s += box((0, -T, 0), (X, 0, Z)) + box((0, Y, 0), (X, Y + T, Z))
@@ -65,7 +65,7 @@ def blinds():
 
 
 def atrium():
-    """A court of 12 x 12 x 16 m with three galleries and their railings, beams over it."""
+    """A courtyard of 12 x 12 x 16 m with three galleries and their railings, and beams above."""
     s = head((1, 1, 1.6), (8, 8, 6), 75) + box((-1, -1, -.2), (13, 13, 0))
     s += box((-1, -1, 0), (0, 13, 16)) + box((12, -1, 0), (13, 13, 16))
     s += box((0, -1, 0), (12, 0, 16)) + box((0, 12, 0), (12, 13, 16))
@@ -82,7 +82,7 @@ def atrium():
 
 
 def tree():
-    """Six thousand leaves over an open plain: what proofs are no help with."""
+    """Six thousand leaves over an open plain, where proofs do not help."""
     random.seed(3)
     s = head((0, -7, 1.7), (0, 0, 1.5), 60)
     s += quad((-30, -30, 0), (30, -30, 0), (30, 30, 0), (-30, 30, 0)) + box((-.1, -.1, 0), (.1, .1, 3))
@@ -105,7 +105,7 @@ SCENES = {'window': lambda: room(window=(1, 3, .9, 2.1)), 'blinds': blinds,
 
 
 def image():
-    """Surroundings as a PFM of 256 x 128: a sun of a few texels in the south-east, 35 degrees high."""
+    """Surroundings as a PFM of 256 x 128: a sun of a few texels, 35 degrees high in the south-east."""
     values = array.array('f')
     for row in range(128):
         altitude = 180 * (row + .5) / 128 - 90  # the lowest row comes first

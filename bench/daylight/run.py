@@ -1,23 +1,23 @@
 #!/usr/bin/env python3
 """Error against processor time of the sky's direct light:
 run.py TROFFER [--output TABLES.md] [--lights "ARGS" ...] [--scenes NAME ...] [--seeds N]
-image.pfm in ARGS is an image of the surroundings that is written beside the rooms. SIZE=WxH in the
-environment: of the pictures, for a quick look.
+image.pfm in ARGS is an environment image that is written next to the rooms. SIZE=WxH in the
+environment sets the size of the pictures, for a quick look.
 
-Renders the rooms of rooms.py by the default, by `fixed` and by `path` (direct light alone), each
-with some seeds, and writes two tables: processor seconds of a picture and its errors, and how many
-times longer `fixed` and `path` would take for the default's error. With --output they go to that
-file after each row (headings and all, ready for docs/reference/daylight.md), and the runs to one of its name
-that ends in .csv. Errors come from the differences of pictures: the relative RMSE of all pixels,
-most of which is made by edges where the sky itself is seen, and the median pixel's relative error
-(as a standard deviation).
+Renders the rooms of rooms.py by the default method, by `fixed` and by `path` (direct light alone),
+each with several seeds. Writes two tables: processor seconds and errors of a picture, and how many
+times longer `fixed` and `path` take for the error of the default. With --output the tables go to
+that file after each row (with headings, ready for docs/reference/daylight.md), and the runs to a .csv of the
+same name. Errors come from the differences of pictures: the relative RMSE of all pixels, which is
+mostly due to edges against the visible sky, and the median pixel's relative error (as a standard
+deviation).
 
-Times longer for `fixed`: by the median pixel with the power law between its two runs of 4 viewing
-rays a pixel, or with the best run of all where that is quicker; by all pixels with the best one of
-16 viewing rays of 16 shadow rays, 64 of 4 and 1024 of 4, since 4 viewing rays leave edges an error
-that no shadow rays take away. For `path`: by the best one of its three runs, likewise for both.
-Errors fall with the root of the time, as they do for noise; `fixed` 1024 x 4 and the last run of
-`path` take about as long as the default does, so that little hangs on it.
+Times of `fixed` for the median pixel: by the power law between its two runs of 4 viewing rays a
+pixel, or by the best run of all if that is faster. Times of `fixed` for all pixels: by the best run
+of 16 viewing rays with 16 shadow rays, 64 with 4, and 1024 with 4, since 4 viewing rays leave an
+error at edges that shadow rays cannot reduce. Times of `path`: by the best of its three runs.
+Errors fall with the root of the time, as noise does. `fixed` 1024 x 4 and the last run of `path`
+take about as long as the default, so the results depend little on that law.
 """
 import argparse
 import array
@@ -51,13 +51,13 @@ def luminances(path):
 
 
 class Bench:
-    """Runs of one light and one scene."""
+    """Runs of one scene under one light."""
 
     def __init__(self, troffer, folder, seeds):
         self.troffer, self.folder, self.seeds = troffer, folder, seeds
 
     def run(self, scene, light, options):
-        """Seconds, error of all pixels, of the median one among those that get light."""
+        """Returns seconds, the error of all pixels, and the error of the median lit pixel."""
         pictures, seconds = [], 0
         for seed in range(1, self.seeds + 1):
             out, stats = self.folder / f'{seed}.pfm', self.folder / 'stats.json'
@@ -77,7 +77,7 @@ class Bench:
 
 
 def median_of_spread(n):
-    """The median of the spread of n values from a normal distribution of deviation 1."""
+    """Returns the median spread of n values from a normal distribution with deviation 1."""
     return .6745 if n == 2 else (1 - 2 / (9 * (n - 1))) ** 1.5  # Wilson & Hilferty
 
 
@@ -86,13 +86,13 @@ def times_longer(run, ours, error):
 
 
 def times_by_law(few, many, ours):
-    """By the power law of the median pixel; no law where more rays did not help."""
+    """Returns the times by the power law of the median pixel; none if more rays did not help."""
     gain = math.log(few[2] / many[2]) if many[2] < .9 * few[2] else math.nan
     return many[0] * (many[2] / ours[2]) ** (math.log(many[0] / few[0]) / gain) / ours[0]
 
 
 def runs_of(bench, scene, light):
-    """Runs by name, the default's first."""
+    """Returns the runs by name, the default's first."""
     runs = {'default': bench.run(scene, light, [])}
     for name, options in FIXED:
         runs[name] = bench.run(scene, light, ['--method', 'fixed', *options])
@@ -123,7 +123,7 @@ def table(heads, rows):
 
 
 def write(output, done):
-    """Both tables of what is done: (scene, light, runs, spp of the last one of `path`)."""
+    """Writes both tables. done: (scene, light, runs, spp of the last run of `path`)."""
     names = list(done[0][2])
     times = [[scene, f'`{light}`',
               *(f'{s:.2f} s, {e:.3f} / {m:.4f}' + (f' (spp {spp})' if name.endswith('as long') else '')

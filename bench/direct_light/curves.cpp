@@ -74,7 +74,7 @@ void describe(const Arguments& a, const Pairs& p, const Reference& reference) {
                          reference.rms_error));
 }
 
-// Runs once for each seed; errors are those of all runs, time is the fastest run's.
+// Runs a method once per seed. Errors cover all runs; the time is that of the fastest.
 template <class Run>
 Answers measure(const Arguments& a, const Pairs& p, const std::string& method, double setting,
                 int repeats, Run&& run) {
@@ -136,7 +136,7 @@ CertifiedOptions options_for(const DirectScene& s, double error) {
   return certified_settings(error, s.prepared.scene.lights.size()).estimator;
 }
 
-// Single rays are slower everywhere from 16 rays on: packets go on to small errors alone.
+// Only packets go on to small errors: from 16 rays on single rays are slower everywhere.
 uint32_t most_rays(const Arguments& a, Traversal traversal) {
   if (a.is_quick) return 256;
   return traversal == Traversal::single ? 1024 : 4096;

@@ -7,7 +7,7 @@ namespace troffer::bench {
 
 Figures figures_of(const Pairs& p, const Answers& answers) {
   Figures f;
-  std::vector<double> off;  // irradiance of the hits of a tile
+  std::vector<double> off;  // errors of the irradiance of a tile's hits
   double light = 0, light2 = 0;
   for (size_t t = 0; t < p.tiles.size(); ++t) {
     off.assign(p.tiles[t].size(), 0);

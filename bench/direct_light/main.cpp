@@ -1,13 +1,14 @@
-// Direct light of flat sources at the hits of a camera: shadow rays, the trees of 1992, certified
-// visibility. bench/direct runs it for every scene and makes tables and plots of its CSV files.
+// Benchmark of direct light from flat sources at camera hits: shadow rays, the bintrees of 1992,
+// certified visibility. bench/direct runs it for every scene and makes tables and plots of its CSV
+// files.
 //
 //   bench_direct curves --scene NAME [--size WxH] [--tiles N] [--spp N]   error against time
 //   bench_direct bias   --scene NAME … [--seeds N]                        mean error over seeds
 //   bench_direct thin   … [--only NAME] [--error E]                       thin occluders
 //   bench_direct shapes                                                   unoccluded light
-//     --rays N --replicates N   the reference: Owen-Sobol rays, independent sets of them
-//     --keep FOLDER             keep references there
-//     --csv FOLDER              append rows to the files there
+//     --rays N --replicates N   reference: number of Owen-Sobol rays and of independent sets
+//     --keep FOLDER             keep references in FOLDER
+//     --csv FOLDER              append rows to the files in FOLDER
 //     --quick                   fewer settings
 //   NAME: clutter, foliage, one of the thin-occluder scenes, or a file in scenes/ or
 //   ../shared/scenes

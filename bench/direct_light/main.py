@@ -19,8 +19,8 @@ THIN = ["wires", "specks", "combs", "pinholes", "contact", "through source", "th
 @dataclass
 class SceneRun:
     file: str
-    size: str  # of the picture as it is rendered
-    rays: int  # of a reference; two of them, independently scrambled
+    size: str  # size of the rendered picture
+    rays: int  # rays of each of two independently scrambled references
 
 
 TILES = 32  # spread over each picture
@@ -54,7 +54,7 @@ class Bench:
         self.program = f"{options.build}/bench/bench_direct"
         self.out = options.out
         self.is_quick = options.quick
-        self.commands = {}  # by experiment: the first such command
+        self.commands = {}  # first command of each experiment
 
     def run(self, experiment, words):
         command = [self.program, experiment, *words, "--keep", f"{self.out}/references", "--csv",

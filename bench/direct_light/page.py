@@ -1,4 +1,4 @@
-"""The page with all tables, in Markdown."""
+"""Writes the page with all tables, in Markdown."""
 
 import os
 
@@ -23,12 +23,12 @@ def digits(value, count=3):
 
 
 def speed_up(curves, scene, view, error):
-    """How many times as fast as the best fixed sampling certified visibility reaches `error`."""
+    """Returns the speed-up of certified visibility over the best fixed sampling at `error`."""
     fixed, method = rows.best_fixed(curves, scene, view, error)
     certified, mark = rows.cost_at(rows.curve(curves, scene, view, "certified"), error)
     if certified is None:
         return fixed, method, None, "beyond"
-    if fixed is None:  # slower than its slowest run, which is not so exact
+    if fixed is None:  # fixed sampling is slower than its slowest run, which is less accurate
         slowest = min(rows.curve(curves, scene, view, m)[-1] for m in rows.FIXED[1:])[1]
         return None, method, certified, f"> {slowest / certified:.1f}"
     return fixed, method, certified, f"{'≥ ' if mark else ''}{fixed / certified:.1f}"
@@ -59,7 +59,7 @@ def summary_text(out):
 
 
 def default_rows(out):
-    """At fixed settings of --error: what it costs and what fixed sampling takes for the same."""
+    """Returns rows by --error: cost of certified visibility, and of fixed sampling for the same error."""
     curves = rows.read(f"{out}/curves.csv")
     body = []
     for r in curves:

@@ -68,24 +68,24 @@ double exact_unoccluded(const FlatSource& s, const Vec3& position, const Vec3& n
     const Vec3d centre = s.plane.origin + (s.plane.u + s.plane.v) * 0.5;
     return disk_irradiance(centre, s.plane.normal, 0.5 * length(s.plane.u), x, n);
   }
-  // Lambert's formula wants the corners counterclockwise as seen from the side that shines.
+  // Lambert's formula needs the corners counterclockwise as seen from the emitting side.
   std::vector<Vec3d> corners = s.corners();
   const Vec3d turn = cross(corners[1] - corners[0], corners[2] - corners[1]);
   if (dot(turn, s.plane.normal) < 0) std::reverse(corners.begin(), corners.end());
   return polygon_irradiance(corners, x, n);
 }
 
-// The end that rays leave out, as a length seen along the source, is under a hundredth of it: else
-// the hit lies in the source's plane, as good as.
+// True if the end that rays leave out, as a length along the source, is under a hundredth of the
+// source. Otherwise the hit practically lies in the source's plane.
 bool is_off_plane(const FlatSource& s, const Vec3& origin) {
   const double left_out = 1 - double(ray_length(s, origin));
   const double distance = length(s.plane.origin - Vec3d(origin));
   return left_out * distance < 0.01 * std::min(length(s.plane.u), length(s.plane.v));
 }
 
-// Pairs count where a source unhidden would give at least a thousandth of its mean irradiance:
-// where only a sliver of it stands above the horizon, few rays would say nothing of how much is
-// visible.
+// Marks the pairs that count: those whose unoccluded irradiance is at least a thousandth of the
+// source's mean. If only a sliver of the source is above the horizon, few rays measure its visible
+// share badly.
 void find_counted(Pairs& p) {
   for (size_t s = 0; s < p.scene.sources.size(); ++s) {
     double sum = 0, count = 0;
@@ -118,7 +118,7 @@ Pairs::Pairs(const DirectScene& s, const View& view) : scene(s) {
   for (int c = 0; c < view.tiles; ++c) {
     Random random(hash_of(uint64_t(c), 5u));
     const int t = int((double(c) + random.next_double()) / view.tiles * all);
-    // tiles are numbered so that successive ones lie far apart
+    // successive tiles lie far apart
     tiles.push_back(tile_at(s, camera, view, int((int64_t(t) * 7919) % all)));
     first.push_back(total);
     hits += tiles.back().size();

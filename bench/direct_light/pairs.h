@@ -1,5 +1,5 @@
-// What is measured: hits of a camera, in tiles as rendering has them, each paired with every flat
-// source of a scene.
+// Pairs of camera hits and flat sources of a scene: what the benchmark measures. Hits come in
+// tiles, as in rendering.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace troffer::bench {
 
-// A scene and all that sampling its direct light stands on. Stays where it is.
+// A scene prepared for sampling its direct light. Not movable.
 struct DirectScene {
   DirectScene(std::string scene_name, Scene s);
 
@@ -21,14 +21,14 @@ struct DirectScene {
   PreparedScene prepared;
   Occluders occluders;
   std::vector<FlatSource> sources;
-  std::vector<double> radiance;               // of each source, luminance
-  std::vector<const LightPrimitive*> pieces;  // what each source was made of
-  size_t left_out = 0;                        // pieces of lights that are not flat
+  std::vector<double> radiance;               // luminance of each source
+  std::vector<const LightPrimitive*> pieces;  // light primitive of each source
+  size_t left_out = 0;                        // number of light primitives that are not flat
   double magnitude = 0;                       // largest absolute coordinate, metres
-  float reach = 1;  // by which hits of a cluster may lie apart, as in rendering
+  float reach = 1;  // largest distance of hits in a cluster, as in rendering
 };
 
-// The hits of 8 × 8 pixels, each pixel next to the one before: plain arrays of one length.
+// The hits of 8 × 8 pixels as arrays of equal length; neighbouring pixels follow each other.
 struct Tile {
   std::vector<Vec3> positions, normals, origins;  // normals: geometric, on the viewer's side
   std::vector<uint32_t> samples;                  // number of the viewing ray
@@ -37,26 +37,27 @@ struct Tile {
   size_t size() const { return positions.size(); }
 };
 
+// The camera's picture.
 struct View {
   int width = 256, height = 256;
-  int tiles = 64;  // spread over the picture
+  int tiles = 64;  // number of tiles, spread over the picture
   int spp = 1;     // viewing rays per pixel
 };
 
-// All pairs of hit and source. Plain arrays over pairs, in the order tile, source, receiver.
+// All pairs of hits and sources, as arrays in the order tile, source, receiver.
 struct Pairs {
   Pairs(const DirectScene& s, const View& view);
 
   const DirectScene& scene;
   std::vector<Tile> tiles;
-  std::vector<size_t> first;        // per tile
+  std::vector<size_t> first;        // first pair of each tile
   std::vector<double> unoccluded;   // exact projected solid angle, sr; closed form in double
-  std::vector<uint8_t> is_counted;  // errors are taken over these
-  std::vector<float> reference;     // visible share; -1 where not counted
+  std::vector<uint8_t> is_counted;  // pairs that count for errors
+  std::vector<float> reference;     // visible share; -1 if not counted
   size_t hits = 0;
-  size_t reachable = 0;  // pairs that some light could reach: what times are divided by
+  size_t reachable = 0;  // number of pairs that light could reach; times are divided by it
   size_t counted = 0;
-  size_t in_plane = 0;  // pairs that would count, but lie in the source's plane
+  size_t in_plane = 0;  // number of pairs that would count, but lie in the source's plane
 
   size_t size() const { return unoccluded.size(); }
   size_t index(size_t tile, size_t source, size_t receiver) const {
@@ -64,7 +65,7 @@ struct Pairs {
   }
 };
 
-// Names a pair's random numbers.
+// Returns the random stream of a pair.
 uint64_t stream_of(const Tile& tile, size_t receiver, size_t source, uint64_t seed);
 
 }  // namespace troffer::bench

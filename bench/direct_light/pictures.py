@@ -1,5 +1,5 @@
-"""Whole pictures of direct light by the program's own command line: certified over a sweep of
---error, beside fixed and path over sweeps of their rays."""
+"""Measures whole pictures of direct light on the command line: certified over a sweep of --error,
+next to fixed and path over sweeps of their rays."""
 
 import argparse
 import csv
@@ -22,7 +22,7 @@ from program import Program
 class Scene:
     name: str
     file: str = ""  # empty: made by bench/interiors
-    lights: int = 0  # as `info` counts them
+    lights: int = 0  # number of lights by `info`
 
 
 SCENES = [
@@ -34,15 +34,15 @@ SCENES = [
 ]
 ERRORS = (0.05, 0.02, 0.01, 0.005)
 FIXED_RAYS = (1, 4, 16, 64, 256, 1024, 4096)
-MOST_FIXED = 4096  # rays of a viewing ray, to all lights
+MOST_FIXED = 4096  # rays per viewing ray, to all lights
 PATHS = (4, 16, 64, 256)
-REFERENCE_RAYS = 16384  # of a viewing ray, to all lights, but no more to one than
+REFERENCE_RAYS = 16384  # rays per viewing ray, to all lights; limited by MOST_TO_ONE per light
 MOST_TO_ONE = 8192
-REFERENCE_PATHS = 512  # twice
-# Runs shorter than this, s, are made three times.
+REFERENCE_PATHS = 512  # in each of two halves
+# Runs shorter than this (s) are repeated three times.
 SHORT = 0.2
 VIEWING_RAYS = 4
-# Where no edge goes through a pixel, four viewing rays see what all see, within this share.
+# A pixel without edges has the same value for four viewing rays as for all, within this share.
 EVEN = 0.005
 HEADER = ["scene", "method", "setting", "seconds", "rays", "rmse", "made", "told"]
 
@@ -64,15 +64,15 @@ def luminance(picture):
 
 
 def reference_rays(lights):
-    """Of a viewing ray to each light, for either half: other numbers have other sequences, so that
-    halves and all settings err independently."""
+    """Returns rays per viewing ray to each light, for both halves. Different numbers have different
+    sequences, so halves and settings have independent errors."""
     rays = 2 ** int(np.log2(min(max(8, REFERENCE_RAYS / lights), MOST_TO_ONE)))
     return rays, rays * 3 // 4
 
 
 class Reference:
-    """The light of the picture's own viewing rays, and of all; and the pixels where both agree:
-    there, methods with different viewing rays can be compared."""
+    """The light by the picture's own viewing rays, and by all; and the pixels where both agree. There,
+    methods with different viewing rays can be compared."""
 
     def __init__(self, program, scene, file, size):
         paths = REFERENCE_PATHS
@@ -89,7 +89,7 @@ class Reference:
         self.light = luminance(self.own[0] + self.own[1]) / 2
         self.mean = float(every.mean())
         self.floor = 0.01 * self.mean
-        # The halves' own noise must not choose: a pixel is even if both say so.
+        # A pixel is even only if both halves say so, since their noise must not decide.
         self.is_even = (self.light > 0)
         for half in halves:
             off = np.abs(luminance(half) - self.light) / np.maximum(self.light, self.floor)
@@ -102,8 +102,8 @@ class Reference:
         return float(np.median(np.abs(a - b) / light))
 
     def errors(self, picture, has_own_rays):
-        """Root mean squares: over the even pixels, over the mean light; and where the viewing rays
-        are the reference's, over all pixels, each over its own light."""
+        """Returns two root mean squares: over the even pixels, relative to the mean light; and, if the
+        viewing rays are the reference's, over all pixels, relative to each pixel's light."""
         x, mask = picture.astype(np.float64), self.is_even
         a, b = self.own if has_own_rays else self.halves
         square = ((x - a) * (x - b)).mean(axis=2)[mask]
@@ -113,7 +113,7 @@ class Reference:
         return rmse, self.relative(luminance(x - a) * luminance(x - b))
 
     def relative(self, squares):
-        """Root of the mean of what is given, over each pixel's own light squared."""
+        """Returns the root of the mean of squares, relative to each pixel's light squared."""
         is_seen = self.light > 0
         light = np.maximum(self.light, self.floor)
         return float(np.sqrt(max((squares / light ** 2)[is_seen].mean(), 0)))
@@ -124,7 +124,7 @@ def settings(scene, is_quick):
     for e in ERRORS[1:4] if is_quick else ERRORS:
         yield "certified", f"--error {e:g}", f"{own} --error {e:g} --aov error", True
     for n in FIXED_RAYS:
-        # the reference's own setting would be compared with itself
+        # the reference's own setting must not be compared with itself
         is_apart = 4 * n <= 3 * reference_rays(scene.lights)[0]
         if n == 1 or (n * scene.lights <= MOST_FIXED and is_apart):
             yield "fixed", f"--shadow-rays {n}", f"{own} --method fixed --shadow-rays {n}", True
@@ -168,7 +168,7 @@ def measure(program, references, scene, options):
 
 
 def write(rows, scenes, shares, options):
-    """What has been measured so far."""
+    """Writes the results so far."""
     with open(f"{options.out}/pictures.csv", "w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(HEADER)
@@ -183,7 +183,7 @@ def main():
     chosen = [s for name in names for s in SCENES if s.name == name]
     os.makedirs(options.out, exist_ok=True)
     program = Program(options.build, options.out, "build/bench/direct-pictures")
-    program.planned = 4 * len(chosen)  # timed() counts its own
+    program.planned = 4 * len(chosen)  # timed() counts its own runs
     references = program
     if options.reference_build:
         references = Program(options.reference_build, options.out, "build/bench/direct-pictures")

@@ -1,4 +1,4 @@
-"""The tables of bench/direct-pictures, in Markdown."""
+"""Writes the tables of bench/direct-pictures, in Markdown."""
 
 from rows import cost_at
 
@@ -18,10 +18,10 @@ def runs_of(rows, scene, method):
 
 
 def against(rows, certified, method):
-    """The cheapest run of `method` that is as exact, how many times its time is, and the same between
-    settings."""
+    """Returns the cheapest run of `method` that is as accurate, its relative time, and the relative time
+    interpolated between settings."""
     runs = runs_of(rows, certified["scene"], method)
-    points = [(max(r["rmse"], 1e-7), r["seconds"]) for r in runs]  # 0: hidden by the reference's noise
+    points = [(max(r["rmse"], 1e-7), r["seconds"]) for r in runs]  # 0: below the noise
     enough = [r for r in runs if r["rmse"] <= certified["rmse"]]
     cost, mark = cost_at(points, certified["rmse"])
     between = f"{cost / certified['seconds']:.2f}{' at most' if mark == '<=' else ''}" if cost else "–"
@@ -34,7 +34,7 @@ def against(rows, certified, method):
 
 
 def by_made(rows, certified):
-    """As the second of these, where what is compared is the error that was asked for."""
+    """Returns the interpolated relative time of `against` if the asked error is compared."""
     runs = runs_of(rows, certified["scene"], "fixed")
     enough = [r["seconds"] for r in runs if r["made"] <= certified["made"]]
     if not enough:

@@ -1,4 +1,4 @@
-"""Error against time, drawn with matplotlib."""
+"""Draws error against time with matplotlib."""
 
 import matplotlib
 
@@ -41,7 +41,7 @@ def _ticks(axis, values):
 
 
 def error_against_time(path, table, error, cost):
-    """A row of panels for each view, a column for each scene."""
+    """Draws a row of panels for each view, and a column for each scene."""
     names = list(dict.fromkeys(r["scene"] for r in table))
     views = list(dict.fromkeys(r["view"] for r in table))
     figure, panels = plt.subplots(len(views), len(names), squeeze=False,

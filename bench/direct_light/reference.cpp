@@ -21,8 +21,8 @@ struct Facet {
   Vec3d a, b, c;
 };
 
-// Triangles that come so close to the source's plane, in front of it and about the source, that a
-// ray which ends short of the plane may miss them. What lies in the plane is none of them.
+// Returns the triangles near the source, in front of its plane, that a ray may miss because it ends
+// short of the plane. Triangles in the plane are not among them.
 std::vector<Facet> rim_facets(const DirectScene& s, const FlatSource& source) {
   const Parallelogram& p = source.plane;
   const double in_plane = 2e-6 * s.magnitude, slab = 4e-6 * s.magnitude;
@@ -38,7 +38,7 @@ std::vector<Facet> rim_facets(const DirectScene& s, const FlatSource& source) {
       upper[a] = std::max(upper[a], q[a]);
     }
   }
-  // over the last slab a ray moves by less than this along the plane, or its pair does not count
+  // over the last slab a ray moves along the plane by less than this, or its pair does not count
   const double margin = 0.02 * std::max(upper.x - lower.x, upper.y - lower.y);
   std::vector<Facet> facets;
   for (const Mesh& mesh : s.prepared.scene.meshes)
@@ -58,8 +58,8 @@ std::vector<Facet> rim_facets(const DirectScene& s, const FlatSource& source) {
   return facets;
 }
 
-// Whether the segment from x to y crosses f on its way. Signs of volumes, so that triangles that
-// share an edge leave no crack between them.
+// True if the segment from x to y crosses f. It uses signs of volumes, so that triangles with a
+// common edge leave no crack.
 bool crosses(const Facet& f, const Vec3d& x, const Vec3d& y) {
   const Vec3d d = y - x, a = f.a - x, b = f.b - x, c = f.c - x;
   const double u = dot(cross(c, b), d), v = dot(cross(a, c), d), w = dot(cross(b, a), d);
@@ -72,7 +72,7 @@ bool crosses(const Facet& f, const Vec3d& x, const Vec3d& y) {
   return t > 0 && t < 1;
 }
 
-// The visible share of one pair by `n` rays of the set `stream`.
+// Returns the visible share of one pair by `n` rays of the set `stream`.
 float visible_share(const DirectScene& s, const FlatSource& source, const std::vector<Facet>& rim,
                     const HitPoint& hit, uint64_t stream, uint32_t n, ShadowRays& m) {
   constexpr uint32_t chunk = 1024;
@@ -105,7 +105,7 @@ std::vector<float> cast(const Pairs& p, uint32_t rays, uint64_t seed) {
   std::vector<std::vector<Facet>> rims;
   for (const FlatSource& s : p.scene.sources) rims.push_back(rim_facets(p.scene, s));
   std::vector<float> values(p.size(), -1);
-  // a row of a tile at a time, so that all cores have work to the end
+  // one row of a tile at a time keeps all cores busy to the end
   std::vector<std::pair<size_t, size_t>> work;
   for (size_t t = 0; t < p.tiles.size(); ++t)
     for (size_t r = 0; r < p.tiles[t].size(); r += 16) work.emplace_back(t, r);
@@ -141,9 +141,9 @@ uint64_t hash_array(uint64_t seed, const std::vector<T>& v) {
   return hash_bytes(hash_combine(seed, v.size()), v.data(), v.size() * sizeof(T));
 }
 
-// Of everything that the reference depends on.
+// Returns a hash of everything that the reference depends on.
 uint64_t key_of(const Pairs& p, uint32_t rays, uint64_t seed) {
-  uint64_t h = hash_of(3, rays, seed);  // 3: the version of this computation
+  uint64_t h = hash_of(3, rays, seed);  // 3: version of this computation
   for (const Mesh& m : p.scene.prepared.scene.meshes)
     h = hash_array(hash_array(h, m.positions), m.triangles);
   for (const Disk& d : p.scene.prepared.scene.disks) {

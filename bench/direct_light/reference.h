@@ -1,4 +1,5 @@
-// The visible share of every pair by very many rays, exact at the source's rim, kept in files.
+// Computes the visible share of every pair with very many rays, exact at the source's rim, and
+// keeps it in files.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +10,26 @@
 
 namespace troffer::bench {
 
+// Settings of the reference.
 struct ReferenceOptions {
-  uint32_t rays = 16384;    // Owen-Sobol, of each replicate: a power of two
-  uint32_t replicates = 2;  // independently scrambled, at least 2; their spread tells the error
-  std::string folder;       // where they are kept; empty: nowhere
+  uint32_t rays = 16384;    // Owen-Sobol rays of each replicate: a power of two
+  uint32_t replicates = 2;  // independently scrambled sets, at least 2; their spread gives the
+                            // error
+  std::string folder;       // folder of kept references; empty: none
 };
 
+// Quality of a reference.
 struct Reference {
-  double rms_error = 0;   // of a pair's visible share, estimated
+  double rms_error = 0;   // estimated error of a pair's visible share
   double mean_error = 0;  // standard error of the mean over all counted pairs
   bool was_kept = false;  // read from a file
 };
 
-// Sets pairs.reference. A ray is hidden if anything lies on it before the source's plane, however
-// close to it: what is too close for a ray in single precision is looked at in double precision,
-// triangle by triangle. Only triangles that do not rise above the source's plane by more than
-// 2e-6 of the largest coordinate are taken to lie in it: the source itself, the ceiling about it.
-// On all cores. Throws EnvironmentError if the file cannot be written.
+// Sets pairs.reference, on all cores. A ray is hidden if anything lies between the hit and the
+// source's plane. Occluders too close to the plane for single-precision rays are tested in double
+// precision, triangle by triangle. Triangles that do not rise above the source's plane by more than
+// 2e-6 of the largest coordinate count as lying in it: the source itself, the ceiling around it.
+// Throws EnvironmentError if the file cannot be written.
 Reference make_reference(Pairs& pairs, const ReferenceOptions& options);
 
 }  // namespace troffer::bench

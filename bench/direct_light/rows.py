@@ -1,4 +1,4 @@
-"""CSV tables, and what is read off their curves."""
+"""Reads CSV tables and interpolates their curves."""
 
 import csv
 import math
@@ -19,20 +19,20 @@ def read(path):
 
 
 def scenes(table):
-    """(scene, view) in order of appearance."""
+    """Returns (scene, view) pairs in order of appearance."""
     return list(dict.fromkeys((r["scene"], r["view"]) for r in table))
 
 
 def curve(table, scene, view, method, error="rms_visible", cost="ns_pair"):
-    """[(error, cost)], in the order of settings."""
+    """Returns [(error, cost)] in the order of settings."""
     return [(r[error], r[cost]) for r in table
             if (r["scene"], r["view"], r["method"]) == (scene, view, method)]
 
 
 def cost_at(points, error):
-    """(cost, mark) of reaching `error`: straight lines in logarithmic scales between neighbouring
-    settings. "<=": the cheapest setting is more exact already, and this is its cost; None: no
-    setting is so exact."""
+    """Returns (cost, mark) of reaching `error`, by straight lines in logarithmic scales between
+    neighbouring settings. Mark "<=": even the cheapest setting is more accurate, and this is its cost.
+    None: no setting is that accurate."""
     enough = [c for e, c in points if e <= error]
     if not enough:
         return None, "beyond"
@@ -47,7 +47,7 @@ def cost_at(points, error):
 
 
 def best_fixed(table, scene, view, error, quantity="rms_visible", cost="ns_pair"):
-    """(cost, method) of the faster of the two ways of casting a fixed number of rays."""
+    """Returns (cost, method) of the faster of the two ways to cast a fixed number of rays."""
     found = []
     for method in FIXED:
         c, _ = cost_at(curve(table, scene, view, method, quantity, cost), error)

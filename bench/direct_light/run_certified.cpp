@@ -23,7 +23,7 @@ void take(const Pairs& pairs, size_t tile, size_t source, std::span<const uint32
 
 }  // namespace
 
-// As certified/certified_lights.cpp does it.
+// Works like certified/certified_lights.cpp.
 void run_certified(const Pairs& pairs, const CertifiedOptions& options, uint64_t seed,
                    Answers& out) {
   const DirectScene& scene = pairs.scene;

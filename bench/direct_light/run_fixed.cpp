@@ -22,7 +22,7 @@ void Answers::reset(size_t pairs) {
 }
 
 void run_fixed(const Pairs& pairs, uint32_t n, Traversal traversal, uint64_t seed, Answers& out) {
-  constexpr size_t most_waiting = 2048;  // rays: what fits into the second cache
+  constexpr size_t most_waiting = 2048;  // rays; they fit into the second-level cache
   const bool is_single = traversal == Traversal::single;
   const RayOrder order = is_single ? RayOrder::as_drawn : RayOrder::compact;
   ShadowRays m;

@@ -10,11 +10,11 @@ namespace troffer::bench {
 
 namespace {
 
-// What kj92/tree_sampling.cpp has.
+// As in kj92/tree_sampling.cpp.
 constexpr float small_source = 0.002f, large_source = 0.5f;
 constexpr size_t packet_rays = 4;
 
-// One tree at work for one hit.
+// One tree that works for one hit.
 struct Task {
   size_t pair = 0;
   const FlatSource* source = nullptr;
@@ -57,8 +57,7 @@ class Sampler {
       sum += pairs_.scene.radiance[s] * task.unoccluded;
       ++count;
     }
-    // as in rendering, each source has the part of the allowed variance that is its part of the
-    // light
+    // as in rendering, each source's share of the allowed variance is its share of the light
     for (size_t i = 0; i < count; ++i) {
       const size_t s = size_t(tasks_[i].source - pairs_.scene.sources.data());
       const double share = pairs_.scene.radiance[s] * tasks_[i].unoccluded / sum;
@@ -85,7 +84,7 @@ class Sampler {
     task.entry->has_pattern = true;
   }
 
-  // Rounds of rays, those of all trees together, until no tree asks for more.
+  // Traces rounds of rays for all trees together, until no tree asks for more.
   void answer(const Tile& tile, size_t r, size_t count, Answers& out) {
     active_.clear();
     for (size_t i = 0; i < count; ++i) active_.push_back(i);

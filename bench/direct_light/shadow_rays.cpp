@@ -13,7 +13,8 @@ namespace troffer::bench {
 
 namespace {
 
-// Measured: nearer than this, and only there, the better points are worth their cost.
+// Squared relative size up to which a source counts as near. Measured: only there the better points
+// are worth their cost.
 constexpr double near_size2 = 2;
 
 }  // namespace
@@ -65,8 +66,8 @@ double area_of(const FlatSource& s) {
 
 namespace {
 
-// Of the first n points of a (0,m,2)-net each of n / 16 equal rectangles holds 16: they come one
-// rectangle after the other.
+// Sorts points by rectangle. Among the first n points of a (0,m,2)-net, each of n / 16 equal
+// rectangles holds 16.
 void order_compactly(uint32_t n, ShadowRays& out) {
   const uint32_t cells = n / 16;
   const auto bits = uint32_t(std::countr_zero(cells));
@@ -82,8 +83,7 @@ void order_compactly(uint32_t n, ShadowRays& out) {
   for (uint32_t i = 0; i < n; ++i) out.order[out.starts[cell_of(i)]++] = i;
 }
 
-// Sets out.numbers to points [first, first + n), u's before v's, and out.order to the order to take
-// them in.
+// Sets out.numbers to points [first, first + n), all u before all v, and out.order to their order.
 void draw_points(uint64_t stream, uint32_t first, uint32_t n, RayOrder order, ShadowRays& out) {
   out.streams.assign(n, stream);
   out.samples.resize(n);
@@ -97,7 +97,7 @@ void draw_points(uint64_t stream, uint32_t first, uint32_t n, RayOrder order, Sh
     std::iota(out.order.begin(), out.order.end(), 0u);
 }
 
-// Takes back the rays from `before` on if none of them has weight.
+// Removes the rays from `before` on if none of them has weight.
 bool keep_if_any(size_t before, ShadowRays& out) {
   float sum = 0;
   for (size_t i = before; i < out.weights.size(); ++i) sum += out.weights[i];

@@ -86,7 +86,7 @@ void add_sphere(Scene& s) {
   s.spheres.push_back(b);
 }
 
-// Points about the source with any normal, farther than `off` from its middle.
+// Returns points around the source with any normal, farther than `off` from its middle.
 SensorBatch sensors(size_t count, float off) {
   SensorBatch b;
   b.offset = 1e-5f;
@@ -106,7 +106,7 @@ SensorBatch sensors(size_t count, float off) {
 
 struct Shape {
   const char* name;
-  float off;  // no points so near to the source
+  float off;  // least distance of points from the source
   std::function<void(Scene&)> build;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr float light_height = 2.5f;
 
-// A floor, a light of 1 m, one of 1.5 m × 0.1 m, and a camera that looks at what stands between.
+// A floor, lights of 1 m and of 1.5 m × 0.1 m, and a camera that looks at the space between.
 Scene floor_and_lights(bool has_lights = true) {
   Scene s;
   s.materials.resize(1);
@@ -28,7 +28,7 @@ Scene floor_and_lights(bool has_lights = true) {
   return s;
 }
 
-// A straight bar from a to b, `size` wide and thick.
+// Adds a straight bar from a to b, `size` wide and thick.
 void add_bar(Mesh& m, const Vec3& a, const Vec3& b, float size) {
   const Vec3 along = normalize(b - a);
   const Vec3 side =
@@ -64,7 +64,7 @@ void specks(Scene&, Mesh& m) {
   }
 }
 
-// 64 bars of 4 mm at 8 mm, `angle` against the lights' sides.
+// Adds 64 bars of 4 mm with a spacing of 8 mm, at `angle` to the lights' sides.
 void comb(Mesh& m, const Vec3& centre, float angle) {
   const Vec3 across{std::cos(angle), std::sin(angle), 0}, along{-across.y, across.x, 0};
   for (int i = 0; i < 64; ++i) {
@@ -78,7 +78,7 @@ void combs(Scene&, Mesh& m) {
   comb(m, {0.3f, 0, 0.4f}, 0.35f);
 }
 
-// A sheet of 1 m with 64 holes of 4 mm.
+// Adds a sheet of 1 m with 64 holes of 4 mm.
 void pinholes(Scene&, Mesh& m) {
   constexpr int n = 8;
   constexpr float cell = 1.0f / n, hole = 0.004f, rim = (cell - hole) / 2;
@@ -113,7 +113,7 @@ void through_receiver(Scene&, Mesh& m) {
   add_bar(m, {0, 0.5f, -0.05f}, {0.4f, 0.3f, 0.25f}, 0.002f);
 }
 
-// A ceiling about a square light and about two disk lights, flush, one in a shade that begins at
+// Adds a ceiling with flush lights, a square and two disks. One disk is in a shade that begins at
 // its rim.
 void embedded(Scene& s, Mesh& m) {
   constexpr float z = light_height;
@@ -154,7 +154,7 @@ void coplanar(Scene&, Mesh& m) {
   add_sheet(m, {-0.2f, -0.1f, 0.5f}, {0.6f, 0.1f, 0}, {-0.1f, 0.5f, 0});
   for (int i = 0; i < 5; ++i)
     add_sheet(m, {0.3f, -0.5f + 0.05f * float(i), 0.5f}, {0.3f, 0, 0}, {0, 0.05f, 0});
-  // upright, in one plane with a side of the large light
+  // vertical, in one plane with a side of the large light
   add_sheet(m, {0.5f, -0.4f, 0.2f}, {0, 0.4f, 0}, {0, 0, 0.5f});
 }
 
@@ -168,7 +168,7 @@ void back_faces(Scene&, Mesh& m) {
   }
 }
 
-// Half a pipe, cut open, and a fan of single triangles.
+// Adds half a pipe, open at its ends, and a fan of separate triangles.
 void open_sheets(Scene&, Mesh& m) {
   constexpr int n = 24;
   for (int i = 0; i < n; ++i) {
@@ -188,7 +188,7 @@ void open_sheets(Scene&, Mesh& m) {
   }
 }
 
-// Each of three things three times, one of them inside out.
+// Adds each of three objects three times, one copy inside out.
 void duplicates(Scene&, Mesh& m) {
   for (int copy = 0; copy < 3; ++copy) {
     add_box(m, {-0.4f, -0.2f, 0.2f}, {-0.1f, 0.1f, 0.4f}, 0.3f, copy == 1);

@@ -1,9 +1,9 @@
-"""How far a picture is from two independent halves of a reference.
+"""Errors of a picture with respect to two independent halves of a reference.
 
-With halves A and B, each the truth plus noise of its own, the mean of (x - A) (x - B) is that of
-(x - truth)^2: the noise of either half meets nothing that it correlates with. So an error smaller
-than the reference's own can be told, to about the half's variance over the root of the number of
-pixels.
+With halves A and B, each the truth plus independent noise, the mean of (x - A) (x - B) is that of
+(x - truth)^2, because the noise of one half correlates with nothing else in the product. So errors
+below the reference's own error can be measured, down to about the half's variance over the root of
+the number of pixels.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ def blocks(picture, side=8):
 
 
 def relative_rmse(picture, a, b):
-    """Over the reference's mean; 0 where the noise hides it."""
+    """Returns the RMSE relative to the reference's mean; 0 if the noise hides it."""
     square = float(np.mean((picture.astype(np.float64) - a) * (picture.astype(np.float64) - b)))
     return float(np.sqrt(max(square, 0.0)) / (0.5 * (a.mean() + b.mean())))
 
@@ -26,8 +26,8 @@ def relative_rmse(picture, a, b):
 @dataclass
 class Errors:
     pixels: float  # relative RMSE
-    blocks: float  # the same of means over 8 x 8 pixels
-    mean: float  # of the picture, relative
+    blocks: float  # relative RMSE of means over 8 x 8 pixels
+    mean: float  # relative error of the picture's mean
 
 
 def errors(picture, a, b):
@@ -37,5 +37,5 @@ def errors(picture, a, b):
 
 
 def noise(a, b):
-    """Relative RMSE of the mean of the halves."""
+    """Returns the relative RMSE of the mean of the halves."""
     return float(np.sqrt(np.mean((a.astype(np.float64) - b) ** 2)) / 2 / (a.mean() + b.mean()) * 2)

@@ -1,4 +1,4 @@
-"""Whole pictures: the default over a sweep of --error beside path tracing, error against time."""
+"""Compares whole pictures: the default over a sweep of --error with path tracing, error against time."""
 
 import argparse
 import csv
@@ -21,8 +21,8 @@ class Interior:
     name: str
     file: str  # empty: made by bench/interiors
     size: str
-    paths: int  # per pixel, of each half of the reference
-    target: float  # times less time than path tracing that is aimed at
+    paths: int  # paths per pixel of each half of the reference
+    target: float  # intended speed-up over path tracing
 
 
 INTERIORS = [
@@ -72,7 +72,7 @@ def settings():
 
 
 def halves(program, interior, is_quick):
-    """Of the reference. It is unbiased: whichever version of the program has made it."""
+    """Returns the reference's halves. They are unbiased, so any version of the program may render them."""
     size = "80x60" if is_quick else interior.size
     paths = 256 if is_quick else interior.paths
     file = scene_file(interior, program.out)
@@ -82,7 +82,7 @@ def halves(program, interior, is_quick):
 
 
 def measure(program, interior, is_quick):
-    """Rows of the table for one scene, and the noise of its reference."""
+    """Returns the rows of the table for one scene, and the noise of its reference."""
     size = "80x60" if is_quick else interior.size
     file = scene_file(interior, program.out)
     a, b = (h.picture for h in halves(program, interior, is_quick))

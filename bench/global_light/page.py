@@ -1,4 +1,4 @@
-"""The page with the tables, in Markdown."""
+"""Writes the page with the tables, in Markdown."""
 
 import math
 
@@ -10,8 +10,8 @@ def table(header, body):
 
 
 def path_seconds(rows, error):
-    """Path tracing's time for `error`: of its run nearest to that error, times the square of the
-    ratio of the two errors; and the number of paths of the cheapest run at or under it."""
+    """Returns path tracing's time for `error`: that of its run with the nearest error, times the square
+    of the ratio of the errors; and the paths of the cheapest run that reaches the error."""
     runs = [(float(r[5]), float(r[3]), r[2]) for r in rows if r[1] == "path"]
     nearest = min(runs, key=lambda r: abs(math.log(max(r[0], 1e-9) / max(error, 1e-9))))
     existing = [r for r in runs if r[0] <= error]

@@ -1,4 +1,4 @@
-"""Error against time, a panel for each scene, drawn with matplotlib."""
+"""Draws error against time, a panel for each scene, with matplotlib."""
 
 import matplotlib
 

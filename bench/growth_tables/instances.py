@@ -1,4 +1,4 @@
-"""What instances cost beside copies: a hall of plants, more and more of them."""
+"""Measures the cost of instances and of copies: halls with increasing numbers of plants."""
 
 import argparse
 import csv
@@ -11,7 +11,7 @@ import time
 
 import plants
 
-# plants, triangles of each, whether copies are tried too, methods
+# plants, triangles of each, also as copies, methods
 CASES = [(10, 100_000, True, 2), (100, 100_000, True, 2), (1000, 100_000, False, 2),
          (2000, 1000, True, 1), (10_000, 250, True, 1), (100_000, 70, True, 1)]
 METHODS = [("path", "--method path --spp 8 --size 256x256"), ("certified", "--error .1 --size 48x48")]

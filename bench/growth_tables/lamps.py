@@ -1,4 +1,4 @@
-"""What many, finely divided or very unequal lamps cost beside one, at equal error: run(...)."""
+"""Compares many, finely divided or very unequal lamps with a single one, at equal error: run(...)."""
 
 import csv
 import json
@@ -18,7 +18,7 @@ import exr  # noqa: E402
 ERRORS = (0.2, 0.1, 0.05, 0.025)
 SIZE = "128x128"
 REFERENCE_SPP = 512
-BRIGHT = 6  # what is so many times brighter than the mean is a lamp: left out
+BRIGHT = 6  # pixels this many times brighter than the mean are lamps and are left out
 
 AT_LAMPS = "LookAt 0.4 0.4 1.7  5 4 0.8  0 0 1\n"
 DOWNWARDS = "LookAt 0.4 0.4 2.3  5 4 -0.9  0 0 1\n"
@@ -44,8 +44,8 @@ def ball(folder, triangles):
 
 
 def divided_ball(folder, triangles, along):
-    """The same shape, each triangle in along² ones. They do not quite lie in its plane: importers
-    would make one of them again."""
+    """The same shape with each triangle divided into along² ones. These are not exactly coplanar, since
+    importers would merge them."""
     points, faces = ball_of(triangles)
     corners = points[faces].astype(float)
     corners = corners[np.linalg.norm(np.cross(*(corners[:, k, :3] - corners[:, 0, :3] for k in (1, 2))),
@@ -70,7 +70,7 @@ def divided_ball(folder, triangles, along):
 
 
 def panel(folder, along):
-    """The square of one lamp, of 2 (along - 1)² triangles."""
+    """The square of one lamp, with 2 (along - 1)² triangles."""
     (x0, y0, z), _, (x1, y1, _), _ = next(rooms.lights(1))
     x, y = np.meshgrid(np.linspace(x0, x1, along), np.linspace(y0, y1, along))
     points = np.stack([x, y, z + 0 * x, x, y], -1).reshape(-1, 5).astype("<f4")
@@ -81,7 +81,7 @@ def panel(folder, along):
 
 
 def write(out):
-    """The rooms without lamps, with these; names of the files."""
+    """Writes the rooms with these lamps and returns the names of the files."""
     folder = f"{out}/scenes/lamps"
     os.makedirs(folder, exist_ok=True)
     whole = f"{folder}.pbrt"
@@ -104,7 +104,7 @@ def write(out):
     names = {}
     for name, shapes in lamps.items():
         names[name] = f"{out}/scenes/lamps-{name.replace(' ', '-')}.pbrt"
-        # The meshes of the room lie in the folder named after the file it was written to.
+        # The room's meshes are in the folder named after its original file.
         with open(names[name], "w") as file:
             file.write(bare + shapes)
         with open(names[name].replace(".pbrt", "-down.pbrt"), "w") as file:
@@ -144,7 +144,7 @@ def render(troffer, scene, options, target):
 
 
 def curve(troffer, scene, out, name):
-    """Seconds of processor time and errors of the default, then of path, per ERRORS."""
+    """Returns processor seconds and errors of the default, then of path, for each of ERRORS."""
     halves = [render(troffer, scene, f"--method path --spp {REFERENCE_SPP} --seed {901 + k}",
                      f"{out}/{name}-half{k}.exr") for k in (0, 1)]
     a, b = halves[0][0], halves[1][0]
@@ -152,7 +152,7 @@ def curve(troffer, scene, out, name):
     is_dark = (a + b).mean(2) / 2 < BRIGHT * mean
 
     def error(x):
-        # The halves' noise is independent: it drops out in the mean.
+        # The halves' noise is independent, so it averages out.
         return float(np.sqrt(max(((x - a) * (x - b)).mean(2)[is_dark].mean(), 1e-12)) / mean)
 
     points = []
@@ -164,7 +164,7 @@ def curve(troffer, scene, out, name):
 
 
 def run(troffer, out):
-    """Rows of the table, and all that was measured."""
+    """Returns the rows of the table, and all measurements."""
     os.makedirs(f"{out}/scenes", exist_ok=True)
     names = write(out)
     curves, rows, all_rows = {}, [], []

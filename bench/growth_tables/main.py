@@ -1,4 +1,4 @@
-"""How time and memory of whole pictures grow: one thing is varied at a time."""
+"""Measures how time and memory of whole pictures grow, with one variable changed at a time."""
 
 import argparse
 import csv
@@ -23,13 +23,13 @@ HEADER = ["varied", "value", "threads", "import s", "structures s", "cells s", "
 class Case:
     varied: str
     value: str
-    size: str  # how much of it there is, for the exponent
+    size: str  # the varied quantity, for the exponent
     triangles: int = 10_000
     lights: int = 10
     width: int = 256
     height: int = 256
     threads: int = 0  # 0: all cores
-    texels: int = 0  # along an edge of each body's image; 0: no images
+    texels: int = 0  # texels along an edge of each body's image; 0: no images
 
 
 def cases(is_quick):
@@ -78,7 +78,7 @@ def run(case, troffer, out):
 
 
 def exponent(sizes, values):
-    """p of value ~ size^p between the last two, which tell most of what is to come."""
+    """Returns p of value ~ size^p between the last two sizes, which predict larger ones best."""
     if min(values[-2:]) <= 0:
         return float("nan")
     return math.log(values[-1] / values[-2]) / math.log(sizes[-1] / sizes[-2])

@@ -1,8 +1,8 @@
 """A hall full of plants: plants.write(path, count, triangles, is_copied).
 
-20 x 15 x 4 m, under 12 lamps; pots stand in rows on its floor, turned and of different sizes, some
-mirrored. Every plant is the same bush of curved leaves, of about so many triangles: one object and
-its instances, or copies.
+20 x 15 x 4 m, under 12 lamps. Pots stand in rows on its floor, turned and of different sizes, some
+mirrored. Every plant is the same bush of curved leaves with about `triangles` triangles: one object
+and its instances, or copies.
 """
 
 import math

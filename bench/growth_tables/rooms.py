@@ -1,8 +1,8 @@
 """A room of any number of triangles and lights: rooms.write(path, triangles, lights, texels).
 
-8 x 6 x 3 m; 24 bodies with bumps stand in it, which share the triangles; the lights are squares in
-a grid under the ceiling, which share 3 m2 and so the power. With texels, each body wears an image
-of its own of so many texels squared. All else is as it is.
+8 x 6 x 3 m. The triangles are divided among 24 bumpy bodies; the lights are squares in a grid under
+the ceiling with a total area of 3 m2, so the power is constant. With texels, each body has its own
+image of texels² texels. Everything else is constant.
 """
 
 import math
@@ -16,7 +16,7 @@ BODIES = 24
 
 
 def body(triangles, centre, radius, rng):
-    """A ball with bumps, of about so many triangles."""
+    """A bumpy ball of about `triangles` triangles."""
     rings = max(3, round(math.sqrt(triangles / 4)))
     t = np.linspace(0, math.pi, rings + 1)[:, None]
     f = np.linspace(0, 2 * math.pi, 2 * rings, endpoint=False)[None, :]
@@ -30,13 +30,13 @@ def body(triangles, centre, radius, rng):
     b = (np.arange(rings)[:, None] * columns + ((k + 1) % columns)[None, :]).ravel()
     faces = np.concatenate([np.stack([a, a + columns, b], 1),
                             np.stack([b, a + columns, b + columns], 1)])
-    # once around, and back: without a seam
+    # forward and back, so that there is no seam
     uvs = np.stack([np.abs(1 - f / math.pi) + 0 * t, t / math.pi + 0 * f], axis=-1).reshape(-1, 2)
     return np.concatenate([points, uvs], 1).astype("<f4"), faces.astype("<i4")
 
 
 def write_png(path, size, rng):
-    """Stripes and grain, 8 bits."""
+    """Writes stripes and grain, 8 bits."""
     x, y = np.meshgrid(np.arange(size) / size, np.arange(size) / size)
     wave = 0.5 + 0.2 * np.sin(60 * x + 8 * np.sin(20 * y)) + rng.uniform(-0.1, 0.1, (size, size))
     tint = rng.uniform(0.4, 1, 3)

@@ -1,5 +1,5 @@
-"""Rooms of one kind each: what stands densely before the light, and lights of many kinds and
-numbers. The same room, table and ceiling light unless something else is the point."""
+"""Rooms of one kind each: dense occluders in front of the light, and lights of many kinds and
+numbers. Room, table and ceiling light are the same unless a case varies them."""
 
 import math
 import random
@@ -42,7 +42,7 @@ def furniture(s, rng):
     s.add(m)
 
 
-# ---- what stands before the light ----
+# ---- occluders ----
 
 def crystals(mesh, top, rng, rings, per_ring, radius, height, size, has_caps=True):
     for ring in range(rings):
@@ -142,7 +142,7 @@ def foliage(s, rng):
 # ---- lights ----
 
 def quads(n):
-    """n of them under the ceiling, of the same light in all."""
+    """n lights under the ceiling with constant total flux."""
     size = 0.4 / math.sqrt(n) if n < 100 else 0.08 if n < 1000 else 0.03
 
     def light(s, _rng):

@@ -1,7 +1,7 @@
-"""Interiors that benchmarks light, made by rule with fixed seeds: interiors.write(name, path).
+"""Interiors for benchmarks, generated with fixed seeds: interiors.write(name, path).
 
-They stand for what people build: stairs with bars and a chandelier before the only light, a window
-behind blinds, a dark room beside a lit one (one floor and a wall without thickness), coves. No
+They represent real buildings: stairs with bars and a chandelier in front of the only light, a window
+behind blinds, a dark room next to a lit one (one floor and a wall without thickness), coves. No
 setting of troffer was chosen on them.
 """
 

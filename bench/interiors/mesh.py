@@ -1,4 +1,4 @@
-"""Triangles of simple bodies, and scenes of them, as pbrt-v4 files. Metres, z up."""
+"""Triangles of simple bodies, and scenes of them as pbrt-v4 files. Metres, z up."""
 
 import math
 
@@ -18,7 +18,7 @@ class Mesh:
         self.triangles.append((n, n + 1, n + 2))
 
     def box(self, low, high, turn=0.0, tilt=0.0, centre=None):
-        """tilt: about y, then turn: about z; radians, about its centre."""
+        """Adds a box, tilted about y, then turned about z, in radians, around its centre."""
         (x0, y0, z0), (x1, y1, z1) = low, high
         c = centre or ((x0 + x1) / 2, (y0 + y1) / 2, (z0 + z1) / 2)
 

@@ -1,4 +1,4 @@
-"""Lists of points by `troffer measure`: the default beside path tracing, at equal standard error."""
+"""Compares `troffer measure` with path tracing on lists of points, at equal standard error."""
 
 import argparse
 import csv
@@ -14,7 +14,7 @@ import interiors
 import page
 from program import Program
 
-# file: empty where bench/interiors makes the scene.
+# file: empty if bench/interiors makes the scene.
 INTERIORS = {
     "kj92room": "scenes/kj92room/kj92room.gltf",
     "modern-hall-diffuse": "scenes/modern-hall/modern-hall-diffuse.pbrt",
@@ -25,7 +25,7 @@ INTERIORS = {
     "gallery": "",
     "furniture": "",
 }
-# Points are what the middles of so many pixels show; the short list has every so many-th of them.
+# Points are visible at the middles of pixels; the short list has every OF_SHORT-th of them.
 PIXELS, OF_SHORT = "20x15", 24
 PATHS, PATHS_OF_REFERENCE = 8192, {"short": 131072, "long": 32768}
 
@@ -33,17 +33,17 @@ PATHS, PATHS_OF_REFERENCE = 8192, {"short": 131072, "long": 32768}
 @dataclass
 class Measured:
     lux: np.ndarray
-    error: np.ndarray  # standard errors that are told
+    error: np.ndarray  # estimated standard errors
     cpu: float  # seconds
 
     @property
     def told(self):
-        """Root mean square, over the list's mean."""
+        """Returns the root mean square of the estimated errors, over the list's mean."""
         return float(np.sqrt(np.mean(self.error**2)) / self.lux.mean())
 
     @property
     def estimated_relative(self):
-        """Root mean square over lit points, each error over the point's own light."""
+        """Returns the root mean square over lit points of each error relative to the point's light."""
         lit = self.lux > 0
         return float(np.sqrt(np.mean((self.error[lit] / self.lux[lit])**2)))
 
@@ -66,7 +66,7 @@ def scene_file(name, out):
 
 
 def write_points(program, name, file):
-    """The files of the two lists."""
+    """Writes the files of the two lists."""
     run = program.render(f"{name}-seen", file, f"--size {PIXELS} --method path --spp 1 --max-spp 1 "
                          "--aov position,normal", is_of_any_version=True)
     layers = run.layers

@@ -1,4 +1,4 @@
-"""The page of docs/results/measuring."""
+"""Writes the page of docs/results/measuring."""
 
 HEAD = """# Lists of measured points: error against time
 

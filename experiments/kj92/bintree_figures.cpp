@@ -1,12 +1,12 @@
-// Figures 4 and 5 of [1], drawn from the bintree that renders: how the subdivision of a source
-// grows with what its rays find, and how it shrinks before the next point uses it. The occluder is
-// a straight edge across the source, so that its visible share is known exactly.
+// Draws figures 4 and 5 of [1] from the bintree that rendering uses: how the subdivision of a
+// source grows with its rays' results, and how it shrinks before the next point. The occluder is a
+// straight edge across the source, so its visible share is known exactly.
 //
 //   kj92_bintree_figures FOLDER
 //
-// writes figure4-a.png … figure4-i.png and figure5-a.png … figure5-c.png (the source seen as the
-// square of its parameters, u to the right, v upwards), figure4.csv and figure5.csv (one row per
-// picture) and leaves.csv (one row per leaf of each picture).
+// It writes figure4-a.png … figure4-i.png and figure5-a.png … figure5-c.png, which show the source
+// as the square of its parameters (u to the right, v upward). figure4.csv and figure5.csv have one
+// row per picture, leaves.csv one row per leaf of each picture.
 // References: [1] Kok & Jansen, "Adaptive Sampling of Area Light Sources in Ray Tracing Including
 //   Diffuse Interreflection", Eurographics '92, §3 and §4.
 
@@ -32,18 +32,18 @@ using namespace troffer;
 
 namespace {
 
-constexpr int side = 240;           // of a picture, in pixels
+constexpr int side = 240;           // size of a picture, px
 constexpr double margin = 4;        // around the square
-constexpr double ray_radius = 3.6;  // of the dot that stands for a ray
+constexpr double ray_radius = 3.6;  // radius of the dot that marks a ray
 const Rgb paper{1}, ink{0}, pencil{0.30f}, hidden_tint{0.72f, 0.72f, 0.76f};
 const Rgb new_ring{0.80f, 0.10f, 0.02f}, forced_tint{1.0f, 0.66f, 0.25f};
 
-// Hides all (u,v) below a straight edge through (½, height) that rises by `slope`.
+// An occluder that hides all (u,v) below a straight edge through (½, height) with the given slope.
 struct Edge {
   double height, slope;
 
   bool hides(Vec2 p) const { return double(p.y) < height + slope * (double(p.x) - 0.5); }
-  // Exact while the edge crosses the left and the right side of the square.
+  // Exact if the edge crosses the left and the right side of the square.
   double visible_share() const { return 1 - height; }
 };
 
@@ -53,7 +53,7 @@ struct Leaf {
   bool is_visible, is_new, is_forced;  // forced: new because of the level difference
 };
 
-// What one picture shows.
+// Contents of one picture.
 struct Panel {
   std::vector<Leaf> leaves;
   std::string note;
@@ -61,8 +61,8 @@ struct Panel {
   size_t new_rays = 0, forced_rays = 0;
 };
 
-// The tree's leaves with what their rays meet, those in `pending` as if answered; all but the first
-// `chosen` of these were asked for by the rule of the level difference.
+// Returns the tree's leaves with the results of their rays; those in `pending` count as answered.
+// All but the first `chosen` pending rays come from the rule of the level difference.
 Panel panel_of(const Bintree& tree, const Edge& edge, size_t chosen, std::string note) {
   Panel p;
   p.note = std::move(note);
@@ -85,15 +85,15 @@ Panel panel_of(const Bintree& tree, const Edge& edge, size_t chosen, std::string
   return p;
 }
 
-// Visibility of the rays, as a query of the tree.
+// Returns the visibility of rays, as a query of the tree.
 auto query_of(const Edge& edge) {
   return [edge](std::span<const Vec2> rays, std::span<ShadowRayResult> results) {
     for (size_t i = 0; i < rays.size(); ++i) results[i] = {!edge.hides(rays[i]), 1.0f};
   };
 }
 
-// [1] Figure 4: the initial rays, then every round; the tree splits as soon as it has its answers,
-// so a picture is taken just before they are given.
+// [1] Figure 4: the initial rays, then every round. The tree splits as soon as it gets answers, so
+// each picture is taken just before.
 std::vector<Panel> refinement(const BintreeOptions& options, const Edge& edge, uint64_t stream,
                               size_t panels) {
   Bintree tree(options);
@@ -112,8 +112,8 @@ std::vector<Panel> refinement(const BintreeOptions& options, const Edge& edge, u
   return sequence;
 }
 
-// [1] Figure 5: the pattern at a point; the same at the next point, where the shadow has moved, all
-// leaves cast again and refined; and what shrinking leaves of it.
+// [1] Figure 5: the pattern at a point; at the next point, where the shadow has moved, with all
+// leaves cast again and refined; and after shrinking.
 std::vector<Panel> shrinking(const BintreeOptions& options, const Edge& here, const Edge& next,
                              uint64_t stream) {
   Bintree tree(options);
@@ -132,7 +132,7 @@ std::vector<Panel> shrinking(const BintreeOptions& options, const Edge& here, co
   return panels;
 }
 
-// Distances in pixels become coverage over one pixel's width.
+// Converts distances in pixels to coverage over one pixel's width.
 float coverage(double distance) {
   return float(std::clamp(0.5 - distance, 0.0, 1.0));
 }

@@ -1,4 +1,4 @@
-"""How far pictures are apart. Pictures are linear float arrays (height, width, 3)."""
+"""Differences between pictures, which are linear float arrays (height, width, 3)."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def srgb8(linear):
-    """8-bit sRGB values, as `troffer compare` and `--tone-map none` make them."""
+    """Returns 8-bit sRGB values, as `troffer compare` and `--tone-map none` make them."""
     c = np.clip(np.nan_to_num(linear.astype(np.float64)), 0, 1)
     encoded = np.where(c <= 0.0031308, 12.92 * c, 1.055 * np.power(c, 1 / 2.4) - 0.055)
     return np.floor(encoded * 255 + 0.5)
@@ -16,11 +16,11 @@ def srgb8(linear):
 class Difference:
     average: float  # mean absolute difference of 8-bit rgb values, 0 ... 255
     rmse: float  # linear
-    relative_rmse: float  # rmse over the reference's mean
+    relative_rmse: float  # RMSE over the reference's mean
 
 
 def difference(picture, reference, mask=None):
-    """Over all pixels, or those where mask (height, width) is set."""
+    """Compares all pixels, or those where mask (height, width) is set."""
     if mask is not None:
         picture, reference = picture[mask], reference[mask]
     rmse = float(np.sqrt(np.mean((picture.astype(np.float64) - reference) ** 2)))
@@ -29,7 +29,7 @@ def difference(picture, reference, mask=None):
 
 
 def smooth(picture, mask, radius):
-    """Mean over the square of 2 radius + 1 pixels, of the pixels in the mask; 0 outside of it."""
+    """Returns the mean over squares of 2 radius + 1 pixels, of pixels in the mask; 0 outside of it."""
     weights = np.repeat(mask[..., None].astype(np.float64), picture.shape[-1], axis=-1)
     sums = []
     for plane in (picture * weights, weights):
@@ -44,7 +44,7 @@ def smooth(picture, mask, radius):
 
 
 def at_equal(x, xs, ys):
-    """y at x on the curve through (xs, ys), straight in logarithms; NaN outside of the curve."""
+    """Returns y at x on the curve through (xs, ys), linear in logarithms; NaN outside of the curve."""
     order = np.argsort(xs)
     xs, ys = np.asarray(xs, float)[order], np.asarray(ys, float)[order]
     if len(xs) == 0 or not xs[0] <= x <= xs[-1]:
@@ -53,8 +53,8 @@ def at_equal(x, xs, ys):
 
 
 def irradiance_of_rectangle(points, normals, corner, u, v, cells=48):
-    """Unoccluded irradiance per radiance, and solid angle, of the parallelogram corner + [0,1] u +
-    [0,1] v that shines towards u × v, by the midpoint rule. points, normals: (n, 3)."""
+    """Returns the unoccluded irradiance per radiance, and the solid angle, of the parallelogram corner +
+    [0,1] u + [0,1] v that emits toward u × v, by the midpoint rule. points, normals: (n, 3)."""
     corner, u, v = (np.asarray(a, float) for a in (corner, u, v))
     normal = np.cross(u, v)
     area = np.linalg.norm(normal)

@@ -1,6 +1,6 @@
 """Reads the EXR files that troffer writes: scan lines, 32-bit float, ZIP, layers by name.
 
-Only that; other EXR files are refused. The format: openexr.com, "OpenEXR File Layout".
+Other EXR files are refused. The format: openexr.com, "OpenEXR File Layout".
 """
 
 import struct
@@ -14,7 +14,7 @@ FLOAT = 2
 
 
 def _attributes(data):
-    """Header attributes as {name: bytes}, and where the header ends."""
+    """Returns the header attributes as {name: bytes}, and the offset after the header."""
     magic, version = struct.unpack_from("<II", data, 0)
     if magic != 20000630 or version & ~0x400 != 2:
         raise ValueError("not a single-part scan line EXR file")
@@ -41,7 +41,7 @@ def _channels(chlist):
 
 
 def _inflate(block, size):
-    if len(block) == size:  # stored as it is where compression does not pay
+    if len(block) == size:  # stored uncompressed if compression does not pay
         return block
     coded = np.frombuffer(zlib.decompress(block), np.uint8).astype(np.int64)
     coded[1:] -= 128
@@ -53,7 +53,7 @@ def _inflate(block, size):
 
 
 def read(path):
-    """{layer: float32 array (height, width, channels)}; "" is the picture, channels as named."""
+    """Returns {layer: float32 array (height, width, channels)}; "" is the picture, channels as named."""
     with open(path, "rb") as file:
         data = file.read()
     attributes, at = _attributes(data)

@@ -1,5 +1,5 @@
-"""Runs troffer, and remembers what it has run: a command is run again only when its words, the
-program or the scene have changed."""
+"""Runs troffer and keeps its results: a command runs again only if its words, the program or the scene
+have changed."""
 
 import hashlib
 import json
@@ -17,14 +17,14 @@ USUAL_BUILD = "build/release"
 
 @dataclass
 class Run:
-    """What a command left behind."""
+    """Results of a command."""
 
-    command: str  # as a reader would type it in the repository's root
+    command: str  # as typed in the repository's root
     exr: str = ""
-    stats: dict = field(default_factory=dict)  # of --stats
+    stats: dict = field(default_factory=dict)  # contents of --stats
     wall: float = 0  # seconds of the whole process
     cpu: float = 0  # seconds of processor time, all threads
-    csv: str = ""  # of measured points
+    csv: str = ""  # of measuring points
     _layers: dict = None
 
     @property
@@ -51,8 +51,8 @@ def _digest(*paths):
 
 
 class Program:
-    """troffer in `build`, its files in `out`; both relative to the repository's root, which is the
-    working directory. usual_out: what commands that are shown have in place of `out`."""
+    """troffer in `build`, with its files in `out`. Both are relative to the working directory, which is
+    the repository's root. usual_out: replaces `out` in printed commands."""
 
     def __init__(self, build, out, usual_out):
         self.build, self.out, self.usual_out = build, out, usual_out
@@ -63,7 +63,7 @@ class Program:
         os.makedirs(f"{out}/renders", exist_ok=True)
 
     def shown(self, words):
-        """A command as a reader would type it, wherever programs and files stand in this run."""
+        """Returns a command as a reader would type it, with the usual folders."""
         command = shlex.join(words).replace(f"{self.build}/", f"{USUAL_BUILD}/")
         return command.replace(f"{self.out}/", f"{self.usual_out}/")
 
@@ -73,7 +73,7 @@ class Program:
         print(f"[{self.done:3d}/{self.planned}] {minutes:2d}:{seconds:02d}  {what}", flush=True)
 
     def _execute(self, name, words, scene, target, is_of_any_version=False):
-        """Runs unless done; returns the record of the run."""
+        """Runs a command unless its result is up to date; returns the record of the run."""
         record_path = f"{self.out}/renders/{name}.run.json"
         key = [self.version, _digest(scene), words]
         if is_of_any_version:
@@ -100,7 +100,7 @@ class Program:
         return record
 
     def radiosity(self, name, scene, options):
-        """Solution file of the preprocessing."""
+        """Returns the solution file of the preprocessing."""
         target = f"{self.out}/renders/{name}.trad"
         words = [self.troffer, "radiosity", scene, *options.split(), "-o", target]
         record = self._execute(name, words, scene, target)
@@ -117,7 +117,7 @@ class Program:
         return Run(self.shown(words), target, numbers, record["wall"], record["cpu"])
 
     def measure(self, name, scene, points, options, is_of_any_version=False):
-        """Values at the points of a CSV file; run again when this has changed."""
+        """Returns values at the points of a CSV file. A changed file is measured again."""
         name = f"{name}-{_digest(points)[:12]}"
         target = f"{self.out}/renders/{name}.csv"
         words = [self.troffer, "measure", scene, "--points", points, *options.split(), "--quiet",
@@ -126,7 +126,7 @@ class Program:
         return Run(self.shown(words), "", {}, record["wall"], record["cpu"], target)
 
     def timed(self, name, scene, options, repeats=3):
-        """Renders anew, `repeats` times, on one thread; seconds of the quickest in the stats."""
+        """Renders `repeats` times on one thread; the stats have the seconds of the fastest run."""
         best = None
         for _ in range(repeats):
             self.forget(name)
@@ -138,7 +138,7 @@ class Program:
         return best
 
     def forget(self, name):
-        """What was run by this name will be run again."""
+        """Discards the result of that name, so that it runs again."""
         record = f"{self.out}/renders/{name}.run.json"
         if os.path.exists(record):
             os.remove(record)

@@ -1,6 +1,6 @@
-"""What more processes would gain: the schedule of src/mpi/leader.cpp played through with the seconds
-and bytes of a journal (TROFFER_MPI_JOURNAL=FILE mpirun … troffer render …), for processes of one
-thread each, every one on a core of its own.
+"""Predicts the gain of more processes: simulates the schedule of src/mpi/leader.cpp with the seconds and
+bytes of a log (TROFFER_MPI_JOURNAL=FILE mpirun … troffer render …). Every process has one thread and
+a core of its own.
 
   simulate.py JOURNAL [--latency S] [--bandwidth BYTES_PER_S] [--pixels N] [--rays N]
               [PROCESSES …]
@@ -12,15 +12,15 @@ import math
 
 
 class Net:
-    """latency: seconds from one process to the other, waking up included; bandwidth: bytes per
-    second of each process's line; letter: rank 0's seconds for an answer and the next lease."""
+    """latency: seconds from one process to another, including wake-up; bandwidth: bytes per second of
+    each process's link; letter: rank 0's seconds for a message, an answer and the next lease."""
 
     def __init__(self, latency, bandwidth, letter):
         self.latency, self.bandwidth, self.letter = latency, bandwidth, letter
 
 
 def goes_by_pixels(records):
-    """Of each job. Tiles do, and gathers, which are as many in all jobs that make them; cells hardly."""
+    """Tells for each job if its size follows the pixels: tiles and gathers do, cells hardly."""
     gathers = [r["items"] for r in records if r["for_all"] and r["items"]][-1:]
     has_gathers = sum([r["items"]] == gathers for r in records if r["for_all"]) > 2
     return [r["items"] > 0 and (not r["for_all"] or (has_gathers and [r["items"]] == gathers))
@@ -37,17 +37,17 @@ class Job:
         self.before = record["before"] * repeat
 
     def handed_out(self, processes, net):
-        """Seconds until the last answer; rank 0's seconds with letters."""
+        """Returns seconds until the last answer, and rank 0's seconds for messages."""
         if processes == 1 or not self.seconds:
             return sum(self.seconds), 0.0
         left = list(reversed(self.seconds))
         cost = net.letter + (self.brief + self.answer) / net.bandwidth
         there = net.latency + self.brief / net.bandwidth
         back = net.latency + self.answer / net.bandwidth
-        waiting = [[] for _ in range(processes)]  # (when it comes, its seconds)
+        waiting = [[] for _ in range(processes)]  # (time of arrival, its seconds)
         free_at = [0.0] * processes
-        # An answer that rank 0 gets, or an item that rank 0 itself is through with. Everybody else
-        # begins with two items: one to do, and one that waits.
+        # An event is an answer that rank 0 gets, or the end of an item of rank 0. All others begin
+        # with two items: one to do, and one that waits.
         events = [(net.latency, r) for r in range(1, processes)] * 2 + [(0.0, 0)]
         heapq.heapify(events)
         courier = busy = end = 0.0
@@ -68,12 +68,12 @@ class Job:
         return end, busy
 
     def spread(self, processes, net):
-        """Seconds until all know what came of it, along a binomial tree in pieces of 8 MiB."""
+        """Returns seconds until all know the result, along a binomial tree in pieces of 8 MiB."""
         if processes == 1:
             return 0.0
         depth = math.ceil(math.log2(processes))
         piece = min(self.told, 8 << 20)
-        # Rank 0's line has as many copies to send as the tree is deep.
+        # Rank 0 sends as many copies as the tree is deep.
         return depth * (net.latency + piece / net.bandwidth) + (
             self.told - piece) * depth / net.bandwidth
 

@@ -28,11 +28,11 @@ constexpr const char* solution_help =
     "certified: keep the cells in this file and continue from them; certified and kj92: take the "
     "radiosity that troffer radiosity wrote";
 
-// Values as typed; turned into options after parsing, where errors become UsageError.
+// Values as typed. They become options after parsing, where errors throw UsageError.
 struct RawOptions {
   std::string size, crop, indirect = "auto";
   std::vector<std::string> aovs;
-  int shadow_rays = -1;  // -1: by the method
+  int shadow_rays = -1;  // -1: default of the method
   std::string coherence = "on", selection = "on";
 };
 
@@ -55,7 +55,7 @@ std::vector<int> integers(const std::string& text, char separator, size_t count,
   return values;
 }
 
-// kj92 with 0 initial rays samples no source: the picture is the radiosity solution.
+// With 0 initial rays kj92 samples no source: the picture shows the radiosity solution.
 void apply_shadow_rays(int asked, RenderOptions& o) {
   if (asked < 0) return;
   BintreeOptions& tree = o.kj92.sampling.tree;
@@ -135,7 +135,7 @@ void add_kj92(CLI::App* r, RenderCommand& c, RawOptions& raw) {
   r->add_option("--solution", c.solution, solution_help);
 }
 
-// What is seen, at what size.
+// Adds the options of camera and image size.
 void add_camera(CLI::App* r, RenderCommand& c, RawOptions& raw) {
   r->add_option("--size", raw.size, "Image size in pixels [the scene's]");
   r->add_option(
@@ -238,7 +238,7 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
   add_indirect(*s, raw.indirect);
   add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
-  c.daylight.invents_sky = false;  // no value rests on light that nobody asked for
+  c.daylight.invents_sky = false;  // no value may depend on a sky that nobody asked for
   add_threads(*s, c.threads);
   add_seed(*s, c.seed);
   s->add_flag("--quiet", c.is_quiet, "No progress bar, notes or warnings");
@@ -252,7 +252,7 @@ void add_info(CLI::App& app, InfoCommand& c) {
   s->add_flag("--json", c.is_json, "Print JSON");
 }
 
-// The options of the command `app` are read.
+// Runs `render` with the parsed options of the command `app`.
 int check_and_run(const CLI::App& app, RenderCommand& render, const RawOptions& raw) {
   check_exposure(render.exposure);
   apply(raw, render.options);
@@ -271,7 +271,7 @@ int check_and_run(const CLI::App& app, MeasureCommand& measure, const RawOptions
   return run_measure(measure);
 }
 
-// `troffer help`, `troffer help COMMAND` and, for tools, `troffer help --json`.
+// Handles `troffer help`, `troffer help COMMAND` and, for tools, `troffer help --json`.
 std::string asked_help(const CLI::App& app, int argc, const char* const* argv) {
   if (argc < 3) return commands_help(app);
   if (argv[2] == std::string("--json")) return help_json(app);
@@ -280,7 +280,8 @@ std::string asked_help(const CLI::App& app, int argc, const char* const* argv) {
   throw UsageError(no_command(app, argv[2]));
 }
 
-// The exit status where that was all: help or version. UsageError for mistakes.
+// Returns the exit status if help or version was all that was asked for. Throws UsageError for
+// mistakes. leads: this process prints.
 std::optional<int> parse_or_help(CLI::App& app, int argc, const char* const* argv, bool leads) {
   if (argc < 2) {
     if (leads) std::fputs(commands_help(app).c_str(), stderr);
@@ -333,7 +334,9 @@ int parse_and_run(int argc, const char* const* argv, ProcessGroup* group) {
   render.options.group = group;
   if (app.got_subcommand("render"))
     return check_and_run(*app.get_subcommand("render"), render, render_raw);
-  if (group != nullptr && !group->leads()) return exit_done;  // all else is for one
+  if (group != nullptr && !group->leads())
+    return exit_done;  // the leading process does everything
+                       // else alone
   if (app.got_subcommand("compare")) return run_compare(compare);
   if (app.got_subcommand("measure"))
     return check_and_run(*app.get_subcommand("measure"), measure, measure_raw);
@@ -351,14 +354,14 @@ int parse_and_run(int argc, const char* const* argv, ProcessGroup* group) {
 
 int report(const char* text, int status) {
   std::string line = text;
-  for (char& ch : line)  // one line, whatever a hostile file put into a name
+  for (char& ch : line)  // keep it one line, whatever a file puts into a name
     if (static_cast<unsigned char>(ch) < 0x20) ch = ' ';
   std::fprintf(stderr, "error: %s\n", printable(line).c_str());
   return status;
 }
 
-// The process that leads tells the user, and ends with that status; another leaves the work to the
-// rest: a status of its own would end them too.
+// Reports a failure in the leading process and returns its status. Another process leaves the group
+// and returns success, since a failing status would end the others.
 int report(const char* text, int status, ProcessGroup* group) {
   if (group == nullptr || group->leads()) return report(text, status);
   group->leave(text);
@@ -374,7 +377,7 @@ int run(int argc, const char* const* argv, ProcessGroup* group) {
   exit_on_stop_signals();
   try {
     const int status = parse_and_run(argc, argv, group);
-    // What was printed may still wait in the buffer: a full disk shows here.
+    // Output may still be in the buffer: a full disk shows up here.
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
       throw EnvironmentError("cannot write to standard output");
     return status;

@@ -38,7 +38,7 @@ BakedShading shading_of(const BakeCommand& c) {
                              : BakedShading::lightmap;
 }
 
-// All that can be told before any work is done.
+// Checks everything that can be checked before any work.
 BakeOptions options_of(const BakeCommand& c) {
   const std::string ending = std::filesystem::path(c.output).extension().string();
   if (ending != ".gltf" && ending != ".glb")
@@ -62,8 +62,8 @@ BakeOptions options_of(const BakeCommand& c) {
   return o;
 }
 
-// The pages' irradiance, in lx, beside the scene.
-// Returns their names and what the scene's file calls them.
+// Writes the pages' irradiance in lx next to the scene. Returns the file names, with the names for
+// the scene's notes.
 std::map<std::string, std::string> write_pages(const BakeCommand& c, BakeResult& result,
                                                OutputFolder& files) {
   std::map<std::string, std::string> written;

@@ -27,7 +27,7 @@ int run_convert(const ConvertCommand& command) {
   guard.add_output("the output", command.output);
   const Scene scene = import_scene(command.scene.file, command.scene.options);
   guard.check_files_read();
-  install_stop_handlers();  // the files belong together: a signal waits until all are there
+  install_stop_handlers();  // a signal must not separate files that belong together
   const UpDecision up = up_of(command.scene, scene);
   const std::vector<Warning> lost = export_scene(scene, command.output, nullptr, up.up);
   if (command.is_quiet) return exit_done;

@@ -103,7 +103,7 @@ void print_text(const Scene& scene, const Json& j, const UpDecision& up) {
              memory["geometry"].get<double>(), memory["textures"].get<double>(),
              memory["peak"].get<double>());
   const Boxd box = bounds_in_file(scene);
-  // Of a scene far from its file's origin the millimetres too.
+  // A scene far from its file's origin needs more digits to show millimetres.
   const int digits = scene.origin == Vec3d{} ? 6 : 9;
   if (!box.is_empty())
     fmt::print("bounds     {:.{}g} {:.{}g} {:.{}g}  to  {:.{}g} {:.{}g} {:.{}g}\n", box.lower.x,
@@ -148,7 +148,7 @@ int run_info(const InfoCommand& command) {
   if (!up.doubt.empty()) scene.warnings.add(up.doubt);
   const Json j = info_json(scene, up);
   if (command.is_json)
-    // A file may hold any bytes in its names; what is not UTF-8 is replaced.
+    // Names in files may contain any bytes; invalid UTF-8 is replaced.
     fmt::print("{}\n", j.dump(2, ' ', false, Json::error_handler_t::replace));
   else
     print_text(scene, j, up);

@@ -23,7 +23,7 @@ namespace troffer {
 
 namespace {
 
-// Where points stand as they cannot be meant to.
+// Warns of points whose place is hardly intended.
 void tell_of_points(const PreparedScene& scene, const std::vector<MeasuringPoint>& points,
                     const MeasureResult& result) {
   if (!result.in_surfaces.empty())
@@ -52,7 +52,7 @@ void write_csv(const std::string& path, const std::string& csv) {
     write_file(path, csv);
 }
 
-// Root mean square of the standard errors, relative to the mean illuminance.
+// Returns the root mean square of the standard errors, relative to the mean illuminance.
 double relative_error(const std::vector<Measurement>& values) {
   double squares = 0, sum = 0;
   for (const Measurement& m : values) {
@@ -63,7 +63,7 @@ double relative_error(const std::vector<Measurement>& values) {
   return sum > 0 ? std::sqrt(squares / n) / (sum / n) : 0;
 }
 
-// Returns the exit status.
+// Writes the results and returns the exit status.
 int write_points(const MeasureCommand& c, const PointList& list, const MeasureResult& result,
                  Clock::time_point start) {
   const std::string csv = measurements_csv(list, result);

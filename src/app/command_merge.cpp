@@ -17,21 +17,21 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t most_pixels = size_t(1) << 30;  // of all layers together
+constexpr size_t most_pixels = size_t(1) << 30;  // limit on all layers together
 
-// What is joined so far.
+// The parts joined so far.
 struct Joined {
-  PartNote note;  // of the first part
+  PartNote note;  // note of the first part
   std::vector<Layer> layers;
-  std::vector<std::string> files;  // by parts; empty: not yet there
-  std::vector<uint8_t> is_there;   // by pixels
+  std::vector<std::string> files;  // file of each part; empty: missing
+  std::vector<uint8_t> is_there;   // per pixel
 };
 
 [[noreturn]] void refuse(const std::string& file, const std::string& what) {
   throw InputError(file, 0, 0, what);
 }
 
-// Of the same picture as the first.
+// Checks that a part belongs to the same picture as the first one.
 void check_note(const PartNote& n, const Joined& all, const std::string& file,
                 const std::string& first) {
   const PartNote& f = all.note;
@@ -50,7 +50,7 @@ void check_note(const PartNote& n, const Joined& all, const std::string& file,
     refuse(file, "part of a picture of another size than " + first);
 }
 
-// Makes room for all of the picture.
+// Allocates the whole picture.
 void begin(const PartNote& note, const LayeredImage& part, const MergeCommand& c, Joined& all) {
   const int width = note.asked[2] - note.asked[0], height = note.asked[3] - note.asked[1];
   if (size_t(width) * size_t(height) > most_pixels / part.layers.size())
@@ -125,14 +125,14 @@ void add_merge(CLI::App& app, MergeCommand& c) {
 
 int run_merge(const MergeCommand& c) {
   check_exposure(c.exposure);
-  image_format(c.output);  // a wrong ending: usage error
+  image_format(c.output);  // throws UsageError for an unknown ending
   OutputGuard guard;
   for (const std::string& part : c.parts) guard.add_input("the part", part);
   guard.add_output("the output", c.output);
   const std::vector<OutputReservation> reserved = reserve_outputs({c.output}, {});
   const Joined all = join(c);
-  install_stop_handlers();  // what is joined is written
-  // Written as the command would have that renders all of it.
+  install_stop_handlers();  // from here on the result is written even if a signal comes
+  // Written like the output of a command that renders the whole picture.
   RenderCommand whole;
   whole.outputs = {c.output};
   whole.exposure = c.exposure;

@@ -27,12 +27,12 @@ namespace troffer {
 
 namespace {
 
-// All that can be told before any work is done.
+// Checks everything that can be checked before any work.
 void check_command(const RadiosityCommand& c) {
   check(c.options);
   for (const std::string& path : c.outputs) {
     const std::string ending = lower_case_ending(path);
-    // a slip, likely: nobody would look for a solution in these
+    // A solution with such an ending is probably a mistake.
     for (const char* other : {"exr", "hdr", "pfm", "png", "jpg", "pbrt", "obj", "csv", "json"})
       if (ending == other)
         throw UsageError("radiosity writes .gltf, .glb or a solution (.trad), not ." + ending);
@@ -41,9 +41,9 @@ void check_command(const RadiosityCommand& c) {
   }
 }
 
-// --cells: kept for --method certified, as render --solution would.
+// Makes the files of --cells, for --method certified, as render --solution would.
 int make_cell_files(const RadiosityCommand& c, const PreparedScene& scene, const StopFlag& stop) {
-  const double error = RenderOptions{}.error;  // as render by itself
+  const double error = RenderOptions{}.error;  // default of render
   CellStore store;
   {
     ProgressBar bar("cells", c.is_quiet);
@@ -135,7 +135,8 @@ std::string statistics_json(const RadiosityCommand& c, const RadiosityResult& r,
   return j.dump(2) + "\n";
 }
 
-// A solution that was interrupted can be looked at; --solution refuses it. Returns the exit status.
+// Writes an interrupted solution, which can be viewed but not used by --solution. Returns the exit
+// status.
 int leave_unfinished(const RadiosityCommand& c, const PreparedScene& scene,
                      const RadiosityResult& result, const RadiositySeconds& seconds,
                      const UpDecision& up) {

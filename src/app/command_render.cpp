@@ -30,7 +30,7 @@ namespace troffer {
 
 namespace {
 
-// InputError where no picture can show anything: no surface, and no light at infinity.
+// Throws InputError if no picture can show anything: no surface, and no environment light.
 void check_visible(const Scene& scene) {
   const auto is_seen = [](const Light& e) {
     return e.kind == LightKind::environment || e.kind == LightKind::sky || e.kind == LightKind::sun;
@@ -39,8 +39,8 @@ void check_visible(const Scene& scene) {
     throw InputError(scene.file, 0, 0, "has nothing to show: no surface, sky or image");
 }
 
-// The camera of --eye and --target, which are in the file's coordinates; nothing where neither is
-// given.
+// Returns the camera of --eye and --target, which are in the file's coordinates; empty if neither
+// is given.
 std::optional<Camera> described_camera(const RenderCommand& c, const Vec3d& origin,
                                        const Vec3& up) {
   if (c.eye.empty() && c.target.empty()) return std::nullopt;
@@ -50,7 +50,7 @@ std::optional<Camera> described_camera(const RenderCommand& c, const Vec3d& orig
                  Vec3(parse_vector(c.target, "--target") - origin), up, c.fov_deg);
 }
 
-// Nothing where the scene has no camera and none is described.
+// Returns the chosen camera; empty if the scene has none and none is described.
 std::optional<Camera> choose_camera(const Scene& scene, const RenderCommand& c, const Vec3& up) {
   if (const auto described = described_camera(c, scene.origin, up)) return described;
   if (!c.camera.empty()) {
@@ -62,7 +62,7 @@ std::optional<Camera> choose_camera(const Scene& scene, const RenderCommand& c, 
   return std::nullopt;
 }
 
-// For a scene without camera.
+// Places a camera in a scene without one, with a warning.
 Camera place_camera(const PreparedScene& scene, const RenderCommand& c, const Vec3& up) {
   if (!c.is_quiet)
     fmt::print(
@@ -77,7 +77,7 @@ struct Seconds {
   double import = 0, build = 0, preprocess_cpu = 0, render = 0, render_cpu = 0, write = 0;
 };
 
-// How a rendering ended, for the statistics.
+// Returns the name of a rendering's end, for the statistics.
 const char* name_of(RenderEnd end) {
   switch (end) {
     case RenderEnd::complete:
@@ -150,7 +150,7 @@ std::string statistics_json(const RenderCommand& c, const RenderResult& result, 
   return j.dump(2) + "\n";
 }
 
-// Refuses files that would be overwritten by mistake.
+// Refuses outputs that would overwrite inputs or each other.
 void guard_files(const RenderCommand& c, OutputGuard& guard) {
   guard.add_inputs(c.scene, c.daylight);
   guard.add_outputs("-o", c.outputs);
@@ -163,18 +163,21 @@ void guard_files(const RenderCommand& c, OutputGuard& guard) {
     guard.add_input("--solution", c.solution);
 }
 
-// What can be said of the command before any work is done; the files that it will write.
+// Checks everything that can be checked before any work, and reserves the files to write.
 std::vector<OutputReservation> check_and_reserve(RenderCommand& c,
                                                  std::optional<OutputGuard>& guard) {
   c.options.method = parse_method(c.method);
   check_method(c.options.method, c.options.indirect, c.solution);
-  for (const std::string& path : c.outputs) image_format(path);  // a wrong ending: usage error
-  // Mistakes are told before the scene is read; far places differ by less than floats tell.
+  for (const std::string& path : c.outputs)
+    image_format(path);  // throws UsageError for an unknown
+                         // ending
+  // Reports mistakes before the scene is read. The coordinates are not relative to the scene's
+  // origin yet, so far places lose precision here.
   described_camera(c, c.eye.empty() ? Vec3d{} : parse_vector(c.eye, "--eye"), {0, 0, 1});
   if (c.options.group != nullptr && !c.options.group->leads()) return {};
   guard_files(c, guard.emplace());
   std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
-  // Shares leave the cells as they are for each other.
+  // Parts do not write cells, so that all parts use the same ones.
   if (c.options.parts == 1)
     reserve_cells(c.solution, c.options.method, c.options.indirect, reserved);
   reserve_checkpoint(c, reserved);
@@ -188,7 +191,7 @@ RenderResult render_with_bar(const PreparedScene& scene, const Camera& camera,
       scene, camera, c.options, [&](double f) { bar.update(f); }, stop);
 }
 
-// The cells are kept once the picture is there.
+// A picture, and the cells to keep after it is written.
 struct Rendered {
   RenderResult result;
   std::unique_ptr<CellStore> cells;
@@ -213,7 +216,7 @@ Rendered prepare_and_render(const PreparedScene& scene, const Camera& camera, Re
   return made;
 }
 
-// Prints how an interrupted rendering ended.
+// Prints how much of the picture an interrupted rendering has finished.
 void tell_interrupted(const RenderStatistics& s, const Unfinished& left) {
   const size_t pixels = size_t(s.width) * size_t(s.height);
   std::string missing;
@@ -231,7 +234,7 @@ void tell_written(const RenderCommand& c, double total, double error) {
   tell_done(files, total, error);
 }
 
-// What is to be said of it in the end, and the exit status.
+// Prints the final messages and returns the exit status.
 int tell(const RenderResult& result, const RenderCommand& c, double total, const Unfinished& left) {
   const RenderStatistics& s = result.statistics;
   const uint64_t bad = s.counters.nan_samples;
@@ -264,8 +267,8 @@ int tell(const RenderResult& result, const RenderCommand& c, double total, const
   return exit_done;
 }
 
-// Once the picture is there. What a stop has left of it replaces no other file, and is not written
-// at all where it shows nothing, or where a checkpoint and an earlier unfinished picture keep more.
+// Adds the picture's outputs to the set. An unfinished picture never replaces another file. It is
+// not written if it is blank, or if a checkpoint and an earlier unfinished picture hold more.
 void add_outputs(const RenderCommand& c, const RenderResult& result, const Camera& camera,
                  const LastingRun& lasting, PreviewFiles& files, Unfinished& left, OutputSet& set) {
   const RenderStatistics& s = result.statistics;
@@ -290,7 +293,7 @@ void add_outputs(const RenderCommand& c, const RenderResult& result, const Camer
   }
 }
 
-// Pictures and statistics replace older ones together.
+// Writes pictures and statistics; they replace older ones together.
 void write_files(const RenderCommand& c, const RenderResult& result, const Camera& camera,
                  const LastingRun& lasting, PreviewFiles& files, Unfinished& left,
                  const std::function<std::string()>& statistics) {
@@ -298,12 +301,12 @@ void write_files(const RenderCommand& c, const RenderResult& result, const Camer
   OutputSet set;
   add_outputs(c, result, camera, lasting, files, left, set);
   if (!c.stats.empty()) set.add(is_unfinished ? left.place(c.stats) : c.stats, statistics());
-  set.commit(!c.lasting.checkpoint.empty());  // safe before the checkpoint goes
+  set.commit(!c.lasting.checkpoint.empty());  // must be on disk before the checkpoint is removed
   if (is_unfinished) return;
   for (const std::string& path : c.outputs) files.is_finished(path);
 }
 
-// What is seen of the picture, and kept, is the leading process's.
+// Only the leading process shows progress and keeps files.
 void join(RenderCommand& c, ProcessGroup& group) {
   if (c.options.threads == 0) c.options.threads = group.usual_threads();
   if (group.leads()) return;

@@ -41,7 +41,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The folder of the report's files: made where it is not there, and removed again where nothing is
+// The folder of the report's files. It is created if missing, and removed again if nothing is
 // written.
 class ReportFolder {
  public:
@@ -54,7 +54,7 @@ class ReportFolder {
                              (error ? ": " + error.message() : ""));
   }
   ~ReportFolder() {
-    std::error_code ignored;  // not empty: it stays
+    std::error_code ignored;  // fails for a folder with files, which stays
     if (is_new_) fs::remove(path_, ignored);
   }
   ReportFolder(const ReportFolder&) = delete;
@@ -66,7 +66,7 @@ class ReportFolder {
   bool is_new_ = false;
 };
 
-// Of all files that were read, the scene's first.
+// Returns hashes of all files that were read, the scene's first.
 std::vector<InputHash> hashes_of(const ReportCommand& c, const FilesRead& read) {
   constexpr size_t most_bytes = size_t(1) << 33;
   std::vector<std::string> files = read.paths();
@@ -80,13 +80,13 @@ std::vector<InputHash> hashes_of(const ReportCommand& c, const FilesRead& read) 
   return hashes;
 }
 
-// Under the sky of daylight factors, and no other light.
+// Returns the scene under the overcast sky of daylight factors, and no other light.
 Scene overcast_scene(const ReportCommand& c) {
   DaylightOptions sky = c.daylight;
   sky.sky = fmt::format("overcast,{}", overcast_lx);
   sky.sun = sky.at = sky.weather = sky.date = sky.environment = "";
   sky.turbidity = 0;
-  sky.dims.clear();  // the sky is whole, and luminaires do not shine
+  sky.dims.clear();  // the sky is not dimmed, and luminaires are off
   UpUse same;
   const Scene scene = with_daylight_apart(load_scene(c.scene, {}, &sky, true, same));
   std::vector<std::string> names;
@@ -95,7 +95,7 @@ Scene overcast_scene(const ReportCommand& c) {
   return with_only_lights(scene, names);
 }
 
-// Those that are named; none where none is: the first, or one for the scene.
+// Returns the cameras with these names.
 std::vector<Camera> named_cameras(const Scene& scene, const std::vector<std::string>& names) {
   std::vector<Camera> chosen;
   for (const std::string& name : names) {
@@ -113,7 +113,7 @@ std::vector<Camera> cameras_of(const PreparedScene& scene, const ReportCommand& 
   return {all.empty() ? framing_camera(scene, up) : all.front()};
 }
 
-// False where it was stopped.
+// Renders the pictures. Returns false if stopped.
 bool add_pictures(const PreparedScene& scene, const ReportCommand& c, const Vec3& up,
                   const StopFlag& stop, Report& report) {
   for (const Camera& camera : cameras_of(scene, c, up)) {
@@ -135,7 +135,8 @@ bool add_pictures(const PreparedScene& scene, const ReportCommand& c, const Vec3
   return true;
 }
 
-// What luminaires' files state, before what the command line says of the same ones.
+// Returns the power that luminaire files state; values of the command line come after them and
+// override them.
 std::vector<PowerRequest> power_of_files(const ReportCommand& c, const Scene& scene,
                                          const Vec3& up) {
   std::vector<PowerRequest> power;
@@ -151,8 +152,7 @@ std::vector<PowerRequest> power_of_files(const ReportCommand& c, const Scene& sc
   return power;
 }
 
-// Statements of power hold for undimmed lights: scales those of lights that --dim changes, by
-// name, dimmed.
+// Stated power holds for undimmed lights: scales the power of lights that --dim changes.
 void dim_power(const ReportCommand& c, const Scene& scene, std::vector<PowerRequest>& power) {
   if (c.daylight.dims.empty()) return;
   std::vector<PowerRequest> dimmed;
@@ -166,7 +166,7 @@ void dim_power(const ReportCommand& c, const Scene& scene, std::vector<PowerRequ
   power.insert(power.end(), dimmed.begin(), dimmed.end());
 }
 
-// Product data, by photometric file.
+// Returns product descriptions by photometric file.
 std::map<std::string, std::string> products_of(const Scene& scene) {
   std::map<std::string, std::string> products;
   for (const LightWeb& web : scene.webs) {
@@ -175,7 +175,7 @@ std::map<std::string, std::string> products_of(const Scene& scene) {
     if ((ending != "ies" && ending != "ldt") || products.contains(web.name) ||
         !fs::is_regular_file(web.name, error))
       continue;
-    WarningLog ignored;  // told when the scene was loaded
+    WarningLog ignored;  // already reported when the scene was loaded
     products[web.name] = read_luminaire(web.name, ignored).description;
   }
   return products;
@@ -203,7 +203,7 @@ ReportInfo info_of(const ReportCommand& c, const Scene& scene, const FilesRead& 
   return info;
 }
 
-// The page last: it is what people open.
+// Writes all files. The page comes last: people open it first.
 void write_report(const Report& report, const ReportFolder& folder) {
   OutputSet files;
   for (size_t i = 0; i < report.pictures.size(); ++i) {
@@ -219,14 +219,14 @@ void write_report(const Report& report, const ReportFolder& folder) {
   files.commit();
 }
 
-// On the page too, as all that a reader of the figures must know.
+// Warns of misplaced luminaires, on the page, too.
 void note_misplaced(Scene& scene, bool is_quiet) {
   const PreparedScene prepared{Scene(scene)};
   warn_of_misplaced(prepared, is_quiet);
   for (const std::string& text : misplaced_luminaires(prepared)) scene.warnings.add(text);
 }
 
-// The names that every report has; there are as many pictures as cameras.
+// Guards the files of every report; the number of pictures is the number of cameras.
 void guard_files(const ReportCommand& c, OutputGuard& guard) {
   guard.add_inputs(c.scene, c.daylight);
   for (const std::string& file : c.surface_files) guard.add_input("--surfaces", file);
@@ -255,7 +255,7 @@ int run_report(const ReportCommand& c) {
   guard_files(c, guard);
   Report report;
   check_method(parse_method(c.method), Indirect::automatic, "");
-  assessment_options(c, {0, 0, 1});  // mistakes are told before any work
+  assessment_options(c, {0, 0, 1});  // reports mistakes before any work
   if (!c.compare.empty()) report.other = read_other_report(c.compare);
   const ThreadLimit limit(c.threads);
   UpUse use{true, {}};

@@ -1,4 +1,4 @@
-// troffer report: what a lighting designer hands in.
+// `troffer report`: its options, and what they ask to assess.
 #pragma once
 
 #include <string>
@@ -9,9 +9,10 @@
 
 namespace troffer {
 
+// Options of `report`, as typed.
 struct ReportCommand {
   SceneChoice scene;
-  std::string output;  // folder
+  std::string output;  // output folder
   std::string title, date;
   std::string compare;  // another report's report.json; empty: none
   std::vector<std::string> lights;
@@ -31,14 +32,15 @@ struct ReportCommand {
   bool is_quiet = false;
   std::string command_line;  // as typed
 };
-void add_report(CLI::App& app, ReportCommand& command);  // its options
+void add_report(CLI::App& app, ReportCommand& command);  // adds its options
 int run_report(const ReportCommand& command);
 
-// The command as typed, for a shell, but for what does not change the result (--threads).
+// Returns the command line as typed, quoted for a shell, without options that do not change the
+// result (--threads).
 std::string command_text(int argc, const char* const* argv);
 
-// What is to be assessed, of the command line and its JSON files. up: of the scene. UsageError,
-// InputError with line and column.
+// Returns the settings of the assessment from the command line and its JSON files. up: of the
+// scene. Throws UsageError, and InputError with line and column.
 AssessmentOptions assessment_options(const ReportCommand& command, const Vec3& up);
 
 }  // namespace troffer

@@ -31,7 +31,7 @@ Camera camera_named(const Scene& scene, const std::string& name) {
   throw UsageError(no_camera_named(scene, name));
 }
 
-// "LATITUDE,LONGITUDE,TIME" before and after its second comma.
+// "LATITUDE,LONGITUDE,TIME", split at its last comma.
 struct PlaceOfTime {
   std::string place, time;
 };
@@ -88,7 +88,7 @@ int run_view(const ViewCommand& c) {
   read_size(c.size, settings);
   const ThreadLimit limit(c.threads);
   const PlaceOfTime at = split_at(c.daylight.at);
-  // Another time of day lights the scene that was read, whatever becomes of its files.
+  // Another time of day relights the scene as it was read, even if its files change.
   SceneChoice choice = c.scene;
   std::optional<KeptFiles> kept;
   if (!at.time.empty()) {

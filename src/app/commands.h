@@ -1,5 +1,6 @@
-// The commands of the program, one function each. They return the exit status; failures throw
-// (base/error.h) and are reported by run().
+// The commands of the program: their options, and one function each, which returns the exit status.
+// Failures throw (base/error.h), and run() reports them. Options hold values as typed; units are
+// those of `troffer help`.
 #pragma once
 
 #include <cstdint>
@@ -29,14 +30,14 @@ constexpr int exit_bad_input = 1;
 constexpr int exit_usage = 2;
 constexpr int exit_interrupted = 130;
 
-// Which scene, as typed.
+// The choice of a scene, as typed.
 struct SceneChoice {
   std::string file;
   ImportOptions options;
-  std::string up;                      // parse_up()'s, or empty: decide_up()'s
-  std::shared_ptr<const Scene> scene;  // as it was read before; null: it is to be read
+  std::string up;                      // direction for parse_up(); empty: decide_up()
+  std::shared_ptr<const Scene> scene;  // an already loaded scene; null: read the file
 };
-void add_scene_choice(CLI::App& app, SceneChoice& choice);  // its options
+void add_scene_choice(CLI::App& app, SceneChoice& choice);  // adds its options
 
 struct RenderCommand {
   SceneChoice scene;
@@ -47,14 +48,14 @@ struct RenderCommand {
   std::vector<std::string> lights;
   DaylightOptions daylight;
   std::string stats;
-  std::string exposure;  // stops, auto, or empty: by itself
+  std::string exposure;  // stops, auto, or empty: automatic where needed
   std::string tone_map = "filmic";
-  std::vector<std::string> selected_lights;  // kj92: empty: all may be sampled
+  std::vector<std::string> selected_lights;  // kj92; empty: all lights
   std::string solution;                      // kj92, certified: file, or empty
   std::string eye, target;                   // "x,y,z"; override the camera
   float fov_deg = 60;
   LastingOptions lasting;
-  bool has_preview = false;  // outputs are written while the work is under way too
+  bool has_preview = false;  // outputs are also written during the rendering
   bool is_quiet = false;
 };
 int run_render(RenderCommand command);
@@ -62,10 +63,10 @@ int run_render(RenderCommand command);
 struct MergeCommand {
   std::string output;
   std::vector<std::string> parts;
-  std::string exposure, tone_map = "filmic";  // as RenderCommand's
+  std::string exposure, tone_map = "filmic";  // as in RenderCommand
   bool is_quiet = false;
 };
-void add_merge(CLI::App& app, MergeCommand& command);  // its options
+void add_merge(CLI::App& app, MergeCommand& command);  // adds its options
 int run_merge(const MergeCommand& command);
 
 struct CompareCommand {
@@ -78,13 +79,13 @@ int run_compare(const CompareCommand& command);
 
 struct MeasureCommand {
   SceneChoice scene;
-  std::string points, output;  // points: a file, or empty
+  std::string points, output;  // point file, or empty
   GridChoice grid;
   std::string method = "certified";
   std::vector<std::string> lights;
   DaylightOptions daylight;
   std::string solution;  // kj92, certified: file, or empty
-  int spp = 0;           // 0 = by the method
+  int spp = 0;           // 0: default of the method
   int depth = -1;
   double error = 0.01;  // certified
   Indirect indirect = Indirect::automatic;
@@ -100,17 +101,17 @@ struct RadiosityCommand {
   RadiosityOptions options;
   std::vector<std::string> lights;
   DaylightOptions daylight;
-  bool makes_cells = false;  // for certified, instead of a solution
+  bool makes_cells = false;  // makes cells for certified instead of a solution
   std::string stats;
   int threads = 0;
   bool is_quiet = false;
 };
-void add_radiosity(CLI::App& app, RadiosityCommand& command);  // its options
+void add_radiosity(CLI::App& app, RadiosityCommand& command);  // adds its options
 int run_radiosity(const RadiosityCommand& command);
 
 struct ViewCommand {
   SceneChoice scene;
-  int port = 0;      // 0: any
+  int port = 0;      // 0: any free port
   std::string size;  // WxH, or empty
   std::string camera;
   std::string method = "certified";
@@ -122,12 +123,12 @@ struct ViewCommand {
   uint64_t seed = 0;
   bool is_quiet = false;
 };
-void add_view(CLI::App& app, ViewCommand& command);  // its options
+void add_view(CLI::App& app, ViewCommand& command);  // adds its options
 int run_view(const ViewCommand& command);
 
 struct InfoCommand {
   SceneChoice scene;
-  std::string polar;  // a drawing to make of a luminaire; empty: none
+  std::string polar;  // file for the polar curves of a luminaire; empty: none
   bool is_json = false;
 };
 int run_info(const InfoCommand& command);
@@ -137,15 +138,15 @@ struct ConvertCommand {
   std::string output;
   bool is_quiet = false;
 };
-void add_convert(CLI::App& app, ConvertCommand& command);  // its options
+void add_convert(CLI::App& app, ConvertCommand& command);  // adds its options
 int run_convert(const ConvertCommand& command);
 
 struct BakeCommand {
   SceneChoice scene;
   std::string output;
-  std::string hdr = "exr";  // of the pages beside it: exr, hdr, none
+  std::string hdr = "exr";  // format of the separate pages: exr, hdr, none
   bool has_vertex_colors = false, is_unlit = false, is_emissive = false;
-  double texels_per_metre = 0;  // 0: as many as fill a page of --resolution
+  double texels_per_metre = 0;  // 0: as many as fit one page of --resolution
   int resolution = 512, largest_page = 4096, gutter = 2, spp = 64;
   std::string exposure = "auto";
   std::string method = "certified", solution, indirect = "auto";
@@ -156,60 +157,60 @@ struct BakeCommand {
   uint64_t seed = 0;
   bool is_quiet = false;
 };
-void add_bake(CLI::App& app, BakeCommand& command);  // its options
-// UsageError where options are at odds; warns of those that the method does not use.
+void add_bake(CLI::App& app, BakeCommand& command);  // adds its options
+// Throws UsageError for contradictory options, and warns of those that the method does not use.
 int check_and_bake(const CLI::App& command_line, BakeCommand command);
 
-// Gets a scene without its images, where it has some, before it is read with them.
+// Called with the scene without images, before they are read; not called for scenes without images.
 using ShowShapes = std::function<void(const Scene& scene)>;
 
-// Which way is up, for a command that loads a scene.
+// Up direction of a scene, for the command that loads it.
 struct UpUse {
-  bool is_needed = false;  // by the command itself, not by its lights alone
+  bool is_needed = false;  // true if the command itself needs it, not only its lights
   UpDecision decision;     // set by load_scene()
 };
 
-// The scene as its file has it, with a progress bar.
+// Reads the scene of the file, with a progress bar.
 Scene read_scene(const SceneChoice& choice, bool is_quiet);
 
-// The scene of a command: imported, with the light of `daylight` (null: as it is), only `lights`
-// emitting (all if empty), warnings printed to standard error unless is_quiet.
+// Returns the scene of a command: imported, with the light of `daylight` (null: unchanged), and
+// only `lights` emitting (all if empty). Prints warnings to standard error unless is_quiet.
 Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& lights,
                  const DaylightOptions* daylight, bool is_quiet, UpUse& up,
                  const ShowShapes& show_shapes = {});
 
-// Decides by --up, else by the scene, given as it was read.
+// Decides the up direction by --up, or else by the scene as read.
 UpDecision up_of(const SceneChoice& choice, const Scene& scene);
-// A line on standard error that says what was decided, unless the user or the format says it, or a
-// warning does.
+// Prints the decision to standard error, unless the user or the format states it, or a warning
+// does.
 void tell_up(const UpDecision& decision);
-// Warns, unless is_quiet, of luminaires that hang outside of the room or within something.
+// Warns, unless is_quiet, of luminaires outside of the room or inside an object.
 void warn_of_misplaced(const PreparedScene& scene, bool is_quiet);
 
-// "certified", "kj92", "fixed" and "path"; UsageError for others.
+// Parses the name of a method. Throws UsageError for unknown names.
 Method parse_method(const std::string& name);
-Indirect parse_indirect(const std::string& name);  // likewise
-// Nothing, auto or stops; UsageError for others.
+Indirect parse_indirect(const std::string& name);  // throws UsageError for unknown names
+// Accepts an empty text, "auto" or stops. Throws UsageError for others.
 void check_exposure(const std::string& text);
 
-// UsageError where options belong to another method.
+// Throws UsageError if options belong to another method.
 void check_method(Method method, Indirect indirect, const std::string& solution);
 
-// Warns, unless is_quiet, of every option given to `command` that its method does not use.
+// Warns, unless is_quiet, of every given option of `command` that its method does not use.
 void warn_of_unused_options(const CLI::App& command, Method method, bool is_quiet);
 
-// Says what the preprocessing leaves out of a scene.
+// Warns of lights that the preprocessing leaves out.
 void warn_of_lights_left_out(const PreparedScene& scene, bool is_quiet);
 
-// What `method` needs beforehand, with a progress bar: the radiosity solution of the file
-// `solution`, or (empty) a new one, and the sources selected. Null for methods that need nothing,
-// and where it was interrupted.
+// Prepares what `method` needs, with a progress bar: the radiosity solution of the file `solution`,
+// or a new one if that is empty, and the selected sources. Null for methods that need nothing, and
+// if interrupted.
 std::unique_ptr<Preparation> prepare_method(const PreparedScene& scene, Method method,
                                             const Kj92Settings& settings, Indirect indirect,
                                             const std::string& solution, int threads, bool is_quiet,
                                             const StopFlag& stop);
 
-// Parses the command line and runs it: the whole program but main.
+// Parses the command line and runs it: the whole program except main().
 int run(int argc, const char* const* argv, ProcessGroup* group = nullptr);
 
 }  // namespace troffer

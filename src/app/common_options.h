@@ -1,4 +1,4 @@
-// Options that most commands share, word for word.
+// Options that several commands share, with the same descriptions.
 #pragma once
 
 #include <cstdint>

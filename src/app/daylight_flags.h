@@ -1,5 +1,5 @@
-// Options that bring light to a scene, on the command line: lighting/daylight_options.h says what
-// they do.
+// Command-line options for light that is added to a scene. lighting/daylight_options.h explains
+// them.
 #pragma once
 
 #include "lighting/daylight_options.h"

@@ -16,10 +16,10 @@ constexpr size_t most_points = 1'000'000;
 
 struct Grid {
   std::string node;
-  double height = 0, spacing = 0;  // m; 0: by EN 12464-1
+  double height = 0, spacing = 0;  // m; spacing 0: by EN 12464-1
 };
 
-// Takes a number behind the last comma off the text; a name may hold commas itself.
+// Removes a number after the last comma from the text and returns it. Names may contain commas.
 std::optional<double> take_number(std::string& text) {
   const size_t comma = text.rfind(',');
   if (comma == std::string::npos) return std::nullopt;
@@ -74,7 +74,7 @@ void add_grids(const PreparedScene& scene, const GridChoice& choice, const Vec3&
       if (grid.points.size() > most_points - list.points.size())
         throw UsageError("--grid: more than a million points");
       for (const GridPoint& p : grid.points) {
-        list.points.push_back({p.position, Vec3(s.normal()) + Vec3{0}});  // no -0
+        list.points.push_back({p.position, Vec3(s.normal()) + Vec3{0}});  // no negative zeros
         list.surfaces.push_back(s.name);
       }
     }

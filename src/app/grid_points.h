@@ -1,4 +1,4 @@
-// Measuring points on a part of a scene: `troffer measure --grid`.
+// Makes measuring points on a part of a scene, for `troffer measure --grid`. Lengths are in metres.
 #pragma once
 
 #include <string>
@@ -8,15 +8,16 @@
 
 namespace troffer {
 
+// Options of --grid, as typed.
 struct GridChoice {
   std::vector<std::string> grids;  // NODE[,HEIGHT[,SPACING]], as typed
-  double border = 0;               // m off the rims, without points
+  double border = 0;               // width of the zone along the rims without points, m
 };
 
-// Adds the points of each grid: middles of cells of the node's upward faces (or of the front of one
-// that is flat and has none), HEIGHT metres above them, by EN 12464-1 or at most SPACING metres
-// apart. Results have a further column then, "surface". UsageError for nodes that do not exist or
-// have no such face, for values that make no sense, and for more than a million points.
+// Adds the points of each grid and fills PointList::surfaces. Points lie at the middles of cells of
+// the node's upward faces, or of the front of a flat node without upward faces, HEIGHT metres above
+// them. Cells follow EN 12464-1, or are at most SPACING metres wide. Throws UsageError for unknown
+// nodes, nodes without such a face, invalid values, and more than a million points.
 void add_grids(const PreparedScene& scene, const GridChoice& choice, const Vec3& up,
                PointList& list);
 

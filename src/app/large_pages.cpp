@@ -19,15 +19,15 @@ namespace troffer {
 
 namespace {
 
-// Bytes, of the heap that grows at the end of the program's data: scenes that need more get usual
+// Limit on the heap that grows at the end of the data segment, bytes. Larger scenes get normal
 // pages for the rest.
 constexpr size_t most_reserved = size_t{1} << 30;
-constexpr size_t share_of_memory = 4;  // one of so many parts
-// Larger ones lie outside the heap, and are given back when they are freed: in it, arrays that grow
-// to such a size would leave gaps as large.
+constexpr size_t share_of_memory = 4;  // divisor of the physical memory
+// Larger blocks lie outside the heap and are returned when freed. Inside it, growing arrays would
+// leave gaps of their size.
 constexpr int largest_in_heap = 32 << 20;
-// So few threads hardly wait for each other where all take from one heap. Heaps of their own, which
-// more of them get, have usual pages.
+// Up to this number, threads hardly wait for each other at one shared heap. More threads get heaps
+// of their own, which have normal pages.
 constexpr unsigned most_threads_of_heap = 4;
 
 size_t bytes_to_reserve(size_t page) {
@@ -42,18 +42,18 @@ size_t bytes_to_reserve(size_t page) {
   return std::min(memory / share_of_memory, most_reserved);
 }
 
-// Has the heap grow by so much, and not shrink.
+// Grows the heap by so many bytes and keeps it from shrinking. Returns false if that fails.
 bool grow_heap(size_t bytes) {
   constexpr int usual_maps = 65536;
   if (mallopt(M_MMAP_THRESHOLD, largest_in_heap) == 0 || mallopt(M_MMAP_MAX, 0) == 0) return false;
   void* volatile const taken =
       mallopt(M_TRIM_THRESHOLD, INT32_MAX) != 0 ? std::malloc(bytes) : nullptr;
-  std::free(taken);  // volatile: or the pair of calls is left out
+  std::free(taken);  // volatile keeps the compiler from removing the pair of calls
   mallopt(M_MMAP_MAX, usual_maps);
   return taken != nullptr;
 }
 
-// Then what is reserved counts as if it were used.
+// True if reserved memory counts as used memory.
 bool is_reserving_dear() {
   std::ifstream file("/proc/sys/vm/overcommit_memory");
   int mode = 0;
@@ -65,7 +65,7 @@ bool is_reserving_dear() {
 void use_large_pages() {
   const size_t page = size_t(std::max(sysconf(_SC_PAGESIZE), 4096L));
   const auto begin = reinterpret_cast<uintptr_t>(sbrk(0));
-  // With pages of 64 KiB large ones have 512 MiB.
+  // With base pages of 64 KiB, large pages are 512 MiB.
   if (page != 4096 || is_reserving_dear()) return;
   if (!grow_heap(bytes_to_reserve(page))) return;
   if (std::thread::hardware_concurrency() <= most_threads_of_heap) mallopt(M_ARENA_MAX, 1);

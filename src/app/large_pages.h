@@ -1,12 +1,12 @@
-// Memory in large pages.
+// Makes the C library allocate memory in large pages. main() calls it.
 #pragma once
 
 namespace troffer {
 
-// Has what is allocated from here on lie in pages of 2 MiB, where the system lends them (Linux with
-// the GNU C library; elsewhere nothing happens), and kept when it is freed, for what comes next: a
-// picture's first second is spent on memory, whose usual pages of 4 KiB are lent one by one. Takes
-// no memory by itself, addresses alone. Call once, before there are other threads.
+// Lets later allocations use pages of 2 MiB where the system provides them (Linux with the GNU C
+// library; elsewhere it does nothing). Freed memory is kept for reuse. Otherwise the first second
+// of a picture goes into page faults of 4 KiB pages. Reserves addresses, but no memory. Call once,
+// before other threads exist.
 void use_large_pages();
 
 }  // namespace troffer

@@ -13,7 +13,7 @@ namespace troffer {
 
 namespace {
 
-// "3/8".
+// Parses "3/8".
 void parse_part(const std::string& text, RenderOptions& options) {
   constexpr int most = 1'000'000;
   const char* end = text.data() + text.size();
@@ -63,7 +63,7 @@ void apply_lasting_options(RenderCommand& c, bool has_spp) {
         throw UsageError("--part writes .exr only, which troffer merge joins to any format");
   }
   c.options.error_limit = l.error_limit;
-  // As many as it takes, where refinement does not see to that.
+  // Methods without refinement get as many samples as the error limit needs.
   constexpr int most_rays = 1 << 16;
   if (l.error_limit > 0 && !has_spp && parse_method(c.method).row().refinement == 1)
     c.options.spp = most_rays;

@@ -1,4 +1,4 @@
-// Renderings that last: limits of time and error, checkpoints, shares of a picture.
+// Options of long renderings: limits of time and error, checkpoints, parts of a picture.
 #pragma once
 
 #include <string>
@@ -9,10 +9,11 @@ class App;
 
 namespace troffer {
 
+// Values as typed.
 struct LastingOptions {
-  double time_limit = 0;            // seconds, of all the program does before it writes; 0: none
-  double error_limit = 0;           // RenderOptions::error_limit
-  std::string checkpoint;           // file, or empty
+  double time_limit = 0;   // seconds for everything before outputs are written; 0: no limit
+  double error_limit = 0;  // RenderOptions::error_limit
+  std::string checkpoint;  // file, or empty
   double checkpoint_interval = 60;  // seconds
   bool is_resumed = false;
   std::string part;  // K/N, or empty
@@ -21,7 +22,7 @@ struct LastingOptions {
 void add_lasting_options(CLI::App& app, LastingOptions& options);
 
 struct RenderCommand;
-// Makes options of the command of what was typed. UsageError where they do not go together.
+// Sets the command's other options from these. Throws UsageError for contradictory options.
 // has_spp: --spp was given.
 void apply_lasting_options(RenderCommand& command, bool has_spp);
 

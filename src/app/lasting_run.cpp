@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What came from the file of --solution, as it is now; empty where there is none.
+// Returns the current contents of the --solution file; empty if there is none.
 std::vector<uint8_t> bytes_of_solution(const std::string& path) {
   const SolutionKind kind = kind_of_solution(path);
   if (kind == SolutionKind::none || kind == SolutionKind::missing) return {};
@@ -42,7 +42,7 @@ void reserve_checkpoint(const RenderCommand& c, std::vector<OutputReservation>& 
   if (!c.lasting.is_resumed && fs::exists(path))
     throw InputError(path, 0, 0, "is there already: --resume goes on from it, or remove it");
   reserved.emplace_back(path);
-  remove_abandoned_files(path);  // whoever was killed while writing one left it half-written
+  remove_abandoned_files(path);  // a killed process may have left temporary files
 }
 
 LastingRun::LastingRun(RenderCommand& command, Clock::time_point start, const StopFlag& stop)
@@ -80,7 +80,7 @@ void LastingRun::agree() const {
   append(own, key_.scene);
   append(own, key_.preparation);
   std::vector<uint8_t> bytes = own;
-  if (!group->tell(bytes, stop())) return;  // all is over
+  if (!group->tell(bytes, stop())) return;  // stopped
   if (bytes != own)
     throw EnvironmentError("scene, options, --solution or program are not those of process 0");
 }
@@ -105,7 +105,7 @@ void LastingRun::finish(const RenderResult& result) const {
     if (!checkpoint_->failure().empty()) throw EnvironmentError(checkpoint_->failure());
     return;
   }
-  std::error_code ignored;  // it does no harm
+  std::error_code ignored;  // a remaining checkpoint does no harm
   fs::remove(output_target(command_.lasting.checkpoint).path, ignored);
 }
 

@@ -1,4 +1,4 @@
-// What stands behind --time-limit, --checkpoint, --resume and --part while a picture is made.
+// Implements --time-limit, --checkpoint, --resume and --part during a rendering.
 #pragma once
 
 #include <memory>
@@ -14,27 +14,28 @@
 
 namespace troffer {
 
-// Before any work: makes sure that the checkpoint can be written, and that none is lost. Throws
-// UsageError, InputError, EnvironmentError.
+// Checks before any work that the checkpoint can be written and does not replace another one.
+// Throws UsageError, InputError, EnvironmentError.
 void reserve_checkpoint(const RenderCommand& command, std::vector<OutputReservation>& reserved);
 
+// A rendering with a time limit, a checkpoint, or as one part of a picture.
 class LastingRun {
  public:
-  // start: of the program; stop: set by signals. Both the command and stop must outlive this.
+  // start: of the program; stop: set by signals. The command and `stop` must outlive this.
   LastingRun(RenderCommand& command, Clock::time_point start, const StopFlag& stop);
 
-  // Set by signals, and when time is over.
+  // Set by signals, and at the time limit.
   const StopFlag& stop() const { return deadline_ ? deadline_->flag() : stop_; }
-  // Once all else of the command's options is settled: sets what they have of all this. Reads the
-  // checkpoint: InputError where it cannot be gone on from.
+  // Completes the command's options; call it when all others are final. Reads the checkpoint, and
+  // throws InputError if it does not fit.
   void begin(const Scene& scene, const Camera& camera);
-  // Makes sure that all of RenderOptions::crew make the same picture: EnvironmentError where this
-  // process would make another than rank 0.
+  // Verifies that all processes of the group render the same picture. Throws EnvironmentError if
+  // this one differs from rank 0.
   void agree() const;
-  // For the file of a share; empty where it is all of the picture.
+  // Returns the note for the file of a part; empty for a whole picture.
   std::string note(const RenderResult& result, const Camera& camera) const;
-  // Outputs are written: a checkpoint of a whole picture goes. Throws EnvironmentError where there
-  // should be one, and it could not be written.
+  // Call after the outputs are written. Removes the checkpoint of a finished picture. Throws
+  // EnvironmentError if a checkpoint should exist but could not be written.
   void finish(const RenderResult& result) const;
 
  private:

@@ -21,8 +21,8 @@ int number_in(const char* name) {
   return value != nullptr ? std::atoi(value) : 0;
 }
 
-// Open MPI's mpirun; Slurm's srun, by PMI or by PMIx, which says no size. The latter two are set
-// for any program that srun starts, shares of a picture among them: those are for one process each.
+// Checks for Open MPI's mpirun, and for Slurm's srun with PMI or PMIx, which gives no size. srun
+// sets the latter two for any program, even for parts of a picture, which need one process each.
 bool is_one_of_several(int argc, char** argv) {
   if (number_in("OMPI_COMM_WORLD_SIZE") > 0) return number_in("OMPI_COMM_WORLD_SIZE") > 1;
   for (int i = 2; i < argc; ++i)

@@ -1,10 +1,11 @@
-// Whether this process was started as one of several by mpirun.
+// Detects whether mpirun started this process as one of several. main() calls it.
 #pragma once
 
 namespace troffer {
 
-// Where it was, and is to render, goes on as troffer-mpi, which stands beside this program, and
-// does not return. Exit status where that cannot be, having said so; 0: it is alone.
+// Replaces this process by troffer-mpi, from the same folder, if it is one of several and is to
+// render; then it does not return. Returns 0 if the process is alone, or an exit status after
+// reporting a failure.
 int hand_over_to_mpi(int argc, char** argv);
 
 }  // namespace troffer

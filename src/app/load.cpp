@@ -74,11 +74,11 @@ Scene read_scene(const SceneChoice& choice, bool is_quiet) {
 Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& lights,
                  const DaylightOptions* daylight, bool is_quiet, UpUse& up,
                  const ShowShapes& show_shapes) {
-  if (!choice.up.empty()) parse_up(choice.up);  // a mistake is told before any work
+  if (!choice.up.empty()) parse_up(choice.up);  // reports a mistake before any work
   Scene scene = import_shown(choice, show_shapes ? ImageUse::left_out : ImageUse::read, is_quiet);
   if (scene.left_out_image_bytes.value_or(0) > 0) {
     show_shapes(scene);
-    scene = Scene();  // not twice in memory
+    scene = Scene();  // frees it before the scene is read again
     scene = import_shown(choice, ImageUse::read, is_quiet);
   }
   scene.left_out_image_bytes.reset();

@@ -17,8 +17,9 @@ namespace troffer {
 
 namespace {
 
-// In the plane at `turn`, the angle between the outermost directions on both sides of the beam in
-// which the intensity reaches a share of the largest one; about the zenith where that is upwards.
+// Returns the angle, in the plane at `turn`, between the outermost directions on both sides of the
+// beam whose intensity reaches a share of the largest one. For upward beams it is measured around
+// the zenith.
 double full_angle_deg(const LightWeb& web, double share, double turn) {
   constexpr int steps = 1800;
   const auto at = [&](double height, double side) {

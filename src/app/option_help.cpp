@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t help_width = 80, text_column = 26;
 
-// The text of an option's validator: of number_between() and its like, or of one_of().
+// Values that an option's validator allows.
 struct Values {
   std::string range;  // "1 or more"
   std::vector<std::string> choices;
@@ -30,12 +30,12 @@ Values values_of(const CLI::Option& option) {
   return {"", split_at(said, '|')};
 }
 
-// "Light of a sky: … " with range and default: "… (1 or more) [4]".
+// Returns the description with range and default appended: "… (1 or more) [4]".
 std::string full_text(const CLI::Option& option) {
   std::string text = option.get_description();
   const Values values = values_of(option);
   if (!values.range.empty()) text += " (" + values.range + ")";
-  // Some descriptions explain every choice.
+  // Some descriptions already explain every choice.
   const bool is_explained =
       std::all_of(values.choices.begin(), values.choices.end(),
                   [&](const std::string& c) { return text.find(c + ": ") != std::string::npos; });
@@ -44,14 +44,14 @@ std::string full_text(const CLI::Option& option) {
   return text;
 }
 
-// Columns that a UTF-8 text takes: bytes that begin a character.
+// Returns the number of columns of a UTF-8 text: bytes that start a character.
 size_t columns(const std::string& text) {
   return size_t(std::count_if(text.begin(), text.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
   }));
 }
 
-// Appends words, from column `at` on, such that lines end before `help_width`.
+// Appends words from column `at` on, and wraps lines at `help_width`.
 void add_wrapped(const std::string& text, size_t at, std::string& out) {
   for (const std::string& word : split_at(text, ' ')) {
     if (at > text_column && at + 1 + columns(word) > help_width) {
@@ -82,7 +82,7 @@ bool is_required(const CLI::Option& option) {
   return option.get_required();
 }
 
-// "troffer render SCENE -o FILE [options]".
+// Returns the usage line: "troffer render SCENE -o FILE [options]".
 std::string usage(const CLI::App& command) {
   const std::string name = command.get_name();
   std::string text = "troffer " + name;
@@ -117,7 +117,7 @@ nlohmann::ordered_json option_json(const std::string& command, const CLI::Option
   return j;
 }
 
-// CLI11 asks a formatter for what --help prints.
+// Makes CLI11 print the texts of this file for --help.
 class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string, CLI::AppFormatMode) const override {

@@ -9,7 +9,7 @@ namespace troffer {
 
 namespace {
 
-// Names of its own: other sources may have the same ones for something else.
+// A namespace of its own: other sources may use the same names.
 namespace option_rows {
 
 constexpr const char* scenes = "gltf|glb|pbrt|obj|ply|stl|xml|rad|gz";
@@ -184,7 +184,7 @@ std::vector<OptionGroup> grouped_options(const CLI::App& command) {
   };
   std::vector<Placed> placed;
   for (const CLI::Option* o : command.get_options()) {
-    if (o->get_group().empty()) continue;  // hidden
+    if (o->get_group().empty()) continue;  // hidden option
     const OptionRow* row = row_of(command.get_name(), *o);
     const std::string_view group = row != nullptr ? row->group : option_rows::other;
     const auto at =

@@ -1,6 +1,5 @@
-// The data that help, completion, the manual and docs/reference/options.md show of each option
-// beside its description: its group, the name of its value and the files it takes. The order is
-// that of help.
+// Table of what help, completion, the manual and docs/reference/options.md show of each option
+// besides its description: group, name of the value, and files. Its order is the order of help.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,27 +8,29 @@
 
 namespace troffer {
 
+// Display data of one option.
 struct OptionRow {
-  const char* name;   // "--size", or a positional's: "scene"; "bake --spp" is of that command alone
-  const char* group;  // the heading it stands under
-  const char* value;  // "WxH"; empty: a flag
-  const char* files;  // endings of its files, "exr|png"; "*": any; "/": a folder; empty: no file
+  const char* name;  // "--size", or a positional: "scene"; "bake --spp" applies to one command only
+  const char* group;  // heading of its group
+  const char* value;  // "WxH"; empty for a flag
+  const char* files;  // endings of its files, "exr|png"; "*": any file; "/": a folder; empty: no
+                      // file
 };
 
-// The row of an option of that command; null where the table lacks it.
+// Returns the row of a command's option; null if the table lacks it.
 const OptionRow* row_of(const std::string& command, const CLI::Option& option);
 
-// All options of a command as help lists them: by groups, common ones first. Those that the table
-// lacks come last, under "Other".
+// The options of a command under one heading. Groups have the order of help, and options without a
+// row come last under "Other".
 struct OptionGroup {
   std::string name;
   std::vector<const CLI::Option*> options;
 };
 std::vector<OptionGroup> grouped_options(const CLI::App& command);
 
-// "-o,--output"; "SCENE" for a positional.
+// Returns "-o,--output", or "SCENE" for a positional.
 std::string name_shown(const std::string& command, const CLI::Option& option);
-// "WxH"; empty for a flag.
+// Returns "WxH", or an empty text for a flag.
 std::string value_shown(const std::string& command, const CLI::Option& option);
 
 }  // namespace troffer

@@ -14,7 +14,7 @@ namespace troffer {
 
 namespace {
 
-// A bound that only keeps out nonsense is no news to readers.
+// Descriptions leave out bounds from this size on, which only catch nonsense.
 constexpr double untold = 1e6;
 
 std::optional<double> number_in(const std::string& text) {
@@ -29,7 +29,7 @@ std::string shown(const std::string& text) {
   return "'" + printable(text.substr(0, 60)) + "'";
 }
 
-// Without an exponent: 0.000001.
+// Formats a number without an exponent: 0.000001.
 std::string plain(double v) {
   if (v == 0 || std::abs(v) >= 1e-3) return fmt::format("{}", v);
   std::string text = fmt::format("{:.9f}", v);

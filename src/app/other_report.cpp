@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr size_t largest_file = size_t(64) << 20, most_entries = 1000;
 
-// A number; none where the key is missing or its value null.
+// Returns a number; empty if the key is missing or null.
 std::optional<double> other_number(const JsonNode& node, const char* key) {
   const auto value = node.find(key);
   if (!value) return std::nullopt;
@@ -29,7 +29,7 @@ std::optional<double> other_number(const JsonNode& node, const char* key) {
   }
 }
 
-// A member that is an object, and not null.
+// Returns a member that is an object; empty if it is missing or null.
 std::optional<JsonNode> object_of(const JsonNode& node, const char* key) {
   const auto value = node.find(key);
   return value && value->is_object() ? value : std::nullopt;
@@ -58,7 +58,7 @@ OtherSurface other_surface(const JsonNode& node) {
   return s;
 }
 
-// Name of the surface of an observer; empty where it belongs to no surface.
+// Returns the name of the observer's surface; empty if it belongs to none.
 std::string surface_name(const JsonNode& observer) {
   try {
     return observer.member("surface").as_string();
@@ -67,7 +67,7 @@ std::string surface_name(const JsonNode& observer) {
   }
 }
 
-// The worst rating of each surface's observers.
+// Sets the worst UGR among each surface's observers.
 void add_glare(const JsonNode& list, OtherReport& r) {
   for (size_t i = 0; i < size_of(list); ++i) {
     const JsonNode g = list.element(i);

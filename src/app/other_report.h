@@ -1,4 +1,4 @@
-// A report that was written before, read back for --compare.
+// Reads another report for `troffer report --compare`.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace troffer {
 
-// Figures of a report.json, and the plan and pictures beside it where there are any. InputError
-// with line and column for files that are none.
+// Returns the figures of a report.json, and the plan and pictures in its folder if present. Throws
+// InputError with line and column if the file is no report.
 OtherReport read_other_report(const std::string& path);
 
 }  // namespace troffer

@@ -10,7 +10,7 @@ namespace troffer {
 
 namespace {
 
-// "FILE,1,2" may be a file of that name, or FILE and two numbers: all that it may be.
+// "FILE,1,2" may be a file of that name, or a file and up to two numbers. Returns all candidates.
 std::vector<std::string> possible_files(std::string text) {
   std::vector<std::string> files;
   for (int numbers = 0; numbers < 3; ++numbers) {

@@ -1,5 +1,6 @@
 // Refuses outputs that would replace an input of the same command, or each other, before any work
-// is done. Files are compared by what they are, not by their names (image/file_identity.h).
+// is done. Files are compared by identity, not by name (image/file_identity.h). All commands that
+// write files use it.
 #pragma once
 
 #include <string>
@@ -13,20 +14,22 @@ namespace troffer {
 
 struct SceneChoice;
 
+// Collects the inputs and outputs of a command.
 class OutputGuard {
  public:
-  // Files to which standard output and standard error go count as outputs.
+  // The files behind standard output and standard error count as outputs.
   OutputGuard();
 
-  // `role` names a file in messages: "-o", "--stats", "the scene". An empty path is none. All throw
-  // UsageError where an output is an input or another output.
+  // `role` names a file in messages: "-o", "--stats", "the scene". Empty paths are ignored. All
+  // throw UsageError if an output is also an input or another output.
   void add_input(const std::string& role, const std::string& path);
   void add_output(const std::string& role, const std::string& path);
   void add_outputs(const std::string& role, const std::vector<std::string>& paths);
-  // The files that these options name.
+  // Adds the files that these options name.
   void add_inputs(const SceneChoice& scene, const DaylightOptions& daylight);
 
-  // Call once the scene is read: images, meshes and included files are known then.
+  // Checks all files that were read. Call it after the scene is loaded: images, meshes and included
+  // files are known then.
   void check_files_read() const;
   const FilesRead& files_read() const { return read_; }
 

@@ -1,4 +1,4 @@
-// The files that a command writes.
+// Reserves the files that a command writes, before its long work.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace troffer {
 
-// Makes sure, before long work, that all of them and `stats`, if there is one, can be written; kept
-// until they are.
+// Makes sure that all outputs and `stats`, if not empty, can be written. Keep the result until they
+// are.
 std::vector<OutputReservation> reserve_outputs(const std::vector<std::string>& outputs,
                                                const std::string& stats);
 
-// The same for a file of cells, where the method keeps cells and the user has named one.
+// Reserves the file of cells if the method keeps cells and `path` is not empty.
 void reserve_cells(const std::string& path, const Method& method, Indirect indirect,
                    std::vector<OutputReservation>& reserved);
 

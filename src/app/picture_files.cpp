@@ -17,8 +17,8 @@ namespace troffer {
 
 namespace {
 
-// The exposure of .png: as asked for; `auto` by the picture, which by itself is taken where without
-// one it would come out nearly black or white.
+// Returns the stops for .png: as requested; for "auto" by the picture. Without a request, automatic
+// exposure applies only if the picture would be nearly black or white.
 double exposure_stops(const RenderCommand& c, const Image& picture, bool is_quiet) {
   constexpr double most_stops_off = 4;
   const Brightness b = brightness(picture);
@@ -75,14 +75,14 @@ std::string PreviewFiles::file_for(const std::string& output) {
 
 void PreviewFiles::write(const Image& picture) {
   WriteOptions options = write_options(command_, camera_, picture, true);
-  options.threads = 1;  // of a loop over tiles, whose other threads go on
+  options.threads = 1;  // the other threads of the loop over tiles keep rendering
   for (const std::string& path : command_.outputs)
     if (output_target(path).kind == OutputTarget::Kind::file)
       write_image(file_for(path), picture, options);
 }
 
 void PreviewFiles::is_finished(const std::string& path) {
-  std::error_code ignored;  // a preview too many does no harm
+  std::error_code ignored;  // a remaining preview does no harm
   for (const Shown& s : shown_)
     if (s.output == path && s.file != path) std::filesystem::remove(s.file, ignored);
   std::erase_if(shown_, [&](const Shown& s) { return s.output == path; });
@@ -98,7 +98,7 @@ std::string PreviewFiles::take_place(const std::string& path, bool is_kept) {
 }
 
 PreviewFiles::~PreviewFiles() {
-  std::error_code ignored;  // there is another failure to tell
+  std::error_code ignored;  // another failure is being reported
   for (const Shown& s : shown_) std::filesystem::remove(s.file, ignored);
 }
 

@@ -1,4 +1,4 @@
-// The picture files of `render`, and what stands in their place while it is under way.
+// Writes the picture files of `render`, and previews in their place during the rendering.
 #pragma once
 
 #include <string>
@@ -9,32 +9,32 @@
 
 namespace troffer {
 
-// How the command wants a picture written, of all that it asks for. is_quiet: without a word about
-// its exposure.
+// Returns how the command's options want a picture written. is_quiet: print nothing about its
+// exposure.
 WriteOptions write_options(const RenderCommand& command, const Camera& camera, const Image& picture,
                            bool is_quiet);
 
-// Says, unless the command is quiet, that no output can hold the layers of --aov: .exr alone can.
+// Warns, unless the command is quiet, if no output can hold the layers of --aov; only .exr can.
 void warn_of_layers(const RenderCommand& command);
 
-// Pictures that take the place of the command's outputs before these are there. A file that stood
-// there before stays, and its previews go beside it. What a failure leaves of previews is removed.
+// Previews that stand in for the command's outputs until these are written. An existing file stays,
+// and its preview goes next to it. The destructor removes remaining previews.
 class PreviewFiles {
  public:
-  // Both must outlive this.
+  // Command and camera must outlive this.
   PreviewFiles(const RenderCommand& command, const Camera& camera)
       : command_(command), camera_(camera) {}
   ~PreviewFiles();
   PreviewFiles(const PreviewFiles&) = delete;
   PreviewFiles& operator=(const PreviewFiles&) = delete;
 
-  // Writes the outputs that are plain files; what takes what is written as it comes (pipes,
-  // devices) gets the last picture alone.
+  // Writes previews of the outputs that are plain files. Pipes and devices get only the final
+  // picture.
   void write(const Image& picture);
-  // The output `path` itself has been written: a preview beside it goes.
+  // Call after the output `path` has been written: removes a preview next to it.
   void is_finished(const std::string& path);
-  // Where an unfinished picture for the output `path` goes: to its preview, or else by
-  // place_for_unfinished(). It is no preview any more.
+  // Returns the file for an unfinished picture of the output `path`: its preview, or
+  // place_for_unfinished(). The file no longer counts as a preview.
   std::string take_place(const std::string& path, bool is_kept);
 
  private:

@@ -13,7 +13,7 @@ namespace troffer {
 
 namespace {
 
-// Whether all of the text is a number of this type; is_large: it is one, but of too many digits.
+// True if all of the text is a number of this type. is_large: it is a number, but out of range.
 template <class Number>
 bool is_number(const std::string& text, bool& is_large) {
   Number v{};
@@ -37,7 +37,7 @@ bool is_number(NumberKind kind, const std::string& text, bool& is_large) {
   return is_number<double>(text, is_large);
 }
 
-// "+007" -> "7".
+// Normalizes a number: "+007" becomes "7".
 std::string plain(std::string text) {
   if (text.size() > 1 && text[0] == '+') text.erase(0, 1);
   const size_t first = !text.empty() && text[0] == '-' ? 1 : 0;

@@ -23,11 +23,11 @@ MeasuringPoint point_of(const CsvReader& table, const CsvRow& row,
   std::array<double, 6> v{};
   for (size_t n = 0; n < names.size(); ++n) v[n] = table.number(row, where[n], names[n], largest);
   const MeasuringPoint p{{v[0], v[1], v[2]}, Vec3(Vec3d{v[3], v[4], v[5]})};
-  constexpr double farthest = 1e9;  // metres, as for the triangles of a scene
+  constexpr double farthest = 1e9;  // m; the limit for triangles of a scene, too
   const Vec3d reach = abs(p.position);
   if (std::max(reach.x, std::max(reach.y, reach.z)) > farthest)
     table.fail(row, where[0], "the point lies more than 1e9 from the origin");
-  constexpr float shortest = 1e-15f;  // the square of less loses digits
+  constexpr float shortest = 1e-15f;  // squares of shorter vectors lose digits
   const float l = length(p.normal);
   if (!(l >= shortest) || !std::isfinite(l))
     table.fail(row, where[3], "the normal has no direction");

@@ -1,4 +1,4 @@
-// The point lists of `troffer measure`.
+// Reads the point lists of `troffer measure` and writes its results.
 #pragma once
 
 #include <string>
@@ -8,21 +8,22 @@
 
 namespace troffer {
 
+// Points, and remarks on the file.
 struct PointList {
   std::vector<MeasuringPoint> points;
-  std::string note;  // names columns that are not used; empty: none
-  // A column of results for what each point lies on; empty where there is none.
+  std::string note;  // names unused columns; empty: none
+  // Name of the surface of each point, for a column of the results; empty: no such column.
   std::vector<std::string> surfaces;
 };
 
-// The columns x,y,z,nx,ny,nz in any order (lighting/csv_table.h). InputError names line and column
-// of what cannot be read (a zero normal, say), and a list without points.
+// Reads the columns x,y,z,nx,ny,nz in any order (lighting/csv_table.h). Throws InputError with line
+// and column for invalid values, such as a zero normal, and for a list without points.
 PointList read_points(const std::string& path);
 
-// Returns the text as a field of a table: in quotes where it holds commas, quotes or line breaks.
+// Returns the text as a CSV field: in quotes if it contains commas, quotes or line breaks.
 std::string csv_field(const std::string& text);
 
-// measurements_csv(), with the column "surface" at the end where the list has one.
+// Returns measurements_csv(), with "surface" as the last column if the list has surfaces.
 std::string measurements_csv(const PointList& list, const MeasureResult& result);
 
 }  // namespace troffer

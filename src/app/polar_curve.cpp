@@ -21,7 +21,8 @@ namespace {
 constexpr double side_length = 480, middle = side_length / 2, reach = 200;  // pixels
 constexpr int rings = 4;
 
-// The largest intensity drawn: of 1, 2, 2.5, 4, 5, 8 times a power of ten, in `rings` steps.
+// Returns the scale's largest intensity: 1, 2, 2.5, 4, 5 or 8 times a power of ten, which `rings`
+// divides evenly.
 double scale_of(const LightWeb& web) {
   const auto largest = double(largest_intensity(web));
   const double power = std::pow(10, std::floor(std::log10(largest)));
@@ -30,7 +31,7 @@ double scale_of(const LightWeb& web) {
   return 10 * power;
 }
 
-// Once round the plane at `turn`, by degrees.
+// Returns the curve in the plane at `turn`, a full circle in steps of one degree.
 std::vector<Vec2d> curve(const LightWeb& web, double turn, double scale) {
   std::vector<Vec2d> points;
   for (int i = 0; i <= 360; ++i) {
@@ -116,7 +117,7 @@ double distance_to(const Vec2d& p, const Vec2d& a, const Vec2d& b) {
   return std::hypot(p.x - a.x - t * x, p.y - a.y - t * y);
 }
 
-// Every pixel that a line covers takes its colour by as much of it.
+// Blends a line's colour into every pixel by the covered share.
 void draw(const Stroke& s, Image& image) {
   double passed = 0;
   for (size_t i = 1; i < s.points.size(); ++i) {
@@ -146,7 +147,7 @@ Image image_of(const std::vector<Stroke>& strokes) {
   constexpr auto n = int(side_length);
   Image image(n, n, Rgb{1});
   for (const Stroke& s : strokes) draw(s, image);
-  for (Rgb& p : image.pixels)  // as colours of a screen are meant
+  for (Rgb& p : image.pixels)  // stroke colours are screen values: convert them to linear light
     p = Rgb{std::pow(p.r, 2.2f), std::pow(p.g, 2.2f), std::pow(p.b, 2.2f)};
   return image;
 }

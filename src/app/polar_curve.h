@@ -1,4 +1,4 @@
-// Polar curves of measured luminaires, as drawings.
+// Draws polar intensity curves of photometric webs, for `troffer info --polar`.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace troffer {
 
-// Draws the intensities in the planes C0 to C180 (solid, red) and C90 to C270 (dashed, blue), the
-// nadir downwards, over rings of equal intensity, to an .svg (with numbers) or a .png. UsageError
+// Draws the intensities in the planes C0-C180 (solid, red) and C90-C270 (dashed, blue), the nadir
+// downward, over rings of equal intensity. Writes .svg (with numbers) or .png. Throws UsageError
 // for other endings.
 void write_polar_curve(const std::string& path, const LightWeb& web);
 

@@ -32,7 +32,7 @@ void warn_of_lights_left_out(const PreparedScene& scene, bool is_quiet) {
 
 namespace {
 
-// What its first rays do not find, kj92 takes for dark.
+// Warns that kj92 counts light as absent if its first rays miss it.
 void warn_of_openings(const PreparedScene& scene, const Kj92Settings& settings) {
   const bool has_far = std::any_of(
       scene.scene.lights.begin(), scene.scene.lights.end(),

@@ -1,12 +1,12 @@
-// Text from files, for a terminal.
+// Makes text from files safe to print on a terminal.
 #pragma once
 
 #include <string>
 
 namespace troffer {
 
-// A question mark for each control character (C0, DEL, and C1 in UTF-8), which a terminal would
-// obey.
+// Replaces each control character (C0, DEL, and C1 in UTF-8) by a question mark, because a terminal
+// would obey it.
 inline std::string printable(std::string text) {
   std::string out;
   for (size_t i = 0; i < text.size(); ++i) {

@@ -18,7 +18,7 @@ double cpu_seconds() {
 double peak_memory_mb() {
   struct rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);
-  return double(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
+  return double(usage.ru_maxrss) / 1024.0;  // Linux reports KiB
 }
 
 }  // namespace troffer

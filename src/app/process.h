@@ -1,4 +1,4 @@
-// Time and memory of this process, for statistics.
+// Time and memory of this process, for statistics and progress.
 #pragma once
 
 #include <chrono>
@@ -8,9 +8,9 @@ namespace troffer {
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point t);
-// Processor time of all threads so far.
+// Returns the processor time of all threads so far, s.
 double cpu_seconds();
-// The most that was ever resident, MiB.
+// Returns the peak resident memory, MiB.
 double peak_memory_mb();
 
 }  // namespace troffer

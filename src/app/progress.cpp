@@ -22,14 +22,14 @@ std::string duration_text(double seconds) {
   return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
 }
 
-// Empty as long as it is a mere guess.
+// Returns an empty text while too little is done for an estimate.
 std::string time_left(const PhaseState& s) {
   constexpr double least_fraction = 0.005;
   if (!(s.fraction > least_fraction)) return "";
   return duration_text(s.seconds * (1 - s.fraction) / s.fraction) + " left";
 }
 
-// Characters, of UTF-8.
+// Returns the number of UTF-8 characters.
 int width_of(const std::string& text) {
   return int(std::count_if(text.begin(), text.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u;
@@ -47,7 +47,7 @@ int terminal_columns() {
 std::string progress_bar(const std::string& label, const PhaseState& s, int columns) {
   constexpr int longest_bar = 32, shortest_bar = 8;
   const std::string percent = fmt::format("{:3.0f} %", 100 * s.fraction);
-  const int room = columns - 1;  // a full line makes some terminals wrap
+  const int room = columns - 1;  // a full line would wrap on some terminals
   const std::string rest[] = {fmt::format("  {:.0f} MB  {}", s.memory_mb, time_left(s)),
                               "  " + time_left(s), ""};
   for (const std::string& tail : rest) {

@@ -1,4 +1,4 @@
-// How far a long command is: a bar on a terminal, and lines in a pipe or a log.
+// Shows the progress of a long command: a bar on a terminal, lines in a pipe or a log.
 #pragma once
 
 #include <chrono>
@@ -8,21 +8,22 @@
 
 namespace troffer {
 
-// State of a phase under way.
+// State of the current phase.
 struct PhaseState {
   double fraction = 0;   // done, in [0,1]
   double seconds = 0;    // since it began
-  double memory_mb = 0;  // the most of the program so far
+  double memory_mb = 0;  // peak memory of the program so far
 };
 
-// One line for a terminal of so many columns: the bar shrinks first, then time left and memory go,
-// then bar and label, so that the line never wraps.
+// Returns one line for a terminal with `columns` columns. To fit, the bar shrinks first; then time
+// left and memory are left out, then bar and label. The line never wraps.
 std::string progress_bar(const std::string& label, const PhaseState& state, int columns);
 
+// Progress of one phase on standard error.
 class ProgressBar {
  public:
-  // Says nothing if is_quiet. Writes to standard error: on a terminal the bar, ten times a second;
-  // elsewhere a line once the phase has taken two seconds, and then one a minute.
+  // Prints nothing if is_quiet. On a terminal the bar is updated ten times a second. Elsewhere a
+  // line appears after two seconds, and then every minute.
   ProgressBar(std::string label, bool is_quiet);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
@@ -37,11 +38,11 @@ class ProgressBar {
   Clock::time_point start_ = Clock::now(), next_;
 };
 
-// Prints what a command has written, the time it took, and the estimated error (relative; nothing
-// where none is known) to standard error, in one line.
+// Prints one line to standard error: the written files, the time, and the estimated error
+// (relative; left out if unknown).
 void tell_done(const std::vector<std::string>& files, double seconds, std::optional<double> error);
 
-// "a, b and c", for a terminal.
+// Returns "a, b and c", safe for a terminal.
 std::string listed(const std::vector<std::string>& names);
 
 }  // namespace troffer

@@ -15,7 +15,8 @@ namespace {
 
 constexpr size_t most_items = 1000, longest_text = 200;
 constexpr double farthest = 1e9;   // m
-constexpr double shortest = 1e-9;  // of a direction: squares of products of less lose digits
+constexpr double shortest = 1e-9;  // least length of a direction: squares of products of shorter
+                                   // ones lose digits
 
 void check_keys(const JsonNode& node, std::initializer_list<std::string_view> known) {
   for (const std::string& key : node.keys())

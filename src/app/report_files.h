@@ -1,4 +1,4 @@
-// Files that say what `report` assesses (docs/report.md): JSON, or tables of surfaces.
+// Reads files that specify what `report` assesses (docs/reference/report.md): JSON, or tables of surfaces.
 #pragma once
 
 #include <string>
@@ -7,9 +7,8 @@
 
 namespace troffer {
 
-// Adds a file's surfaces, observers and profiles (these in place of ones of the same id). A .csv is
-// a list of surfaces (app/surface_list.h).
-// InputError with line and column.
+// Adds a file's surfaces, observers and profiles; a profile replaces one with the same id. A .csv
+// is a list of surfaces (app/surface_list.h). Throws InputError with line and column.
 void read_report_file(const std::string& path, AssessmentOptions& options);
 
 }  // namespace troffer

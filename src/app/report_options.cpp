@@ -19,7 +19,8 @@ namespace troffer {
 
 namespace {
 
-// "NODE[:PROFILE]"; a name may have colons itself: what is no profile belongs to it.
+// Parses "NODE[:PROFILE]". Names may contain colons, so a suffix that is no profile belongs to the
+// name.
 SurfaceRequest parse_surface(const std::string& text, const std::vector<Profile>& profiles) {
   SurfaceRequest r;
   const size_t colon = text.rfind(':');
@@ -54,7 +55,7 @@ Observer parse_observer(const std::string& text) {
   return o;
 }
 
-// As a shell takes it for one word.
+// Quotes a word for a shell.
 std::string in_quotes(const std::string& word) {
   const auto is_plain = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
@@ -139,7 +140,7 @@ void add_report(CLI::App& app, ReportCommand& c) {
   add_how(*s, c);
   add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
-  c.daylight.invents_sky = false;  // no verdict rests on light that nobody asked for
+  c.daylight.invents_sky = false;  // no verdict may depend on a sky that nobody asked for
   add_threads(*s, c.threads);
   add_seed(*s, c.seed);
   s->add_flag("--quiet", c.is_quiet, "No progress bar, notes or warnings");

@@ -14,7 +14,7 @@ namespace {
 StopFlag stop_requested = false;
 static_assert(StopFlag::is_always_lock_free);
 
-// `text` is a literal: a handler may do no more than write it.
+// `text` is a literal: in a handler only write() is safe.
 template <size_t size>
 [[noreturn]] void end_at_once(const char (&text)[size]) {
   remove_temporary_files();
@@ -41,7 +41,7 @@ void handle_stop_signals(void (*handler)(int)) {
 
 void exit_on_stop_signals() {
   handle_stop_signals(on_early_signal);
-  // A file as large as may be is an error of writing.
+  // Reaching the limit of file sizes becomes a write error.
   signal(SIGXFSZ, SIG_IGN);
 }
 

@@ -1,18 +1,18 @@
-// SIGINT and SIGTERM ask for a stop; a second one ends the program at once, without what is written
-// half.
+// SIGINT and SIGTERM ask for a stop. A second signal ends the program at once and removes
+// half-written files.
 #pragma once
 
 #include "base/parallel.h"
 
 namespace troffer {
 
-// Until install_stop_handlers() there is nothing to keep: a signal ends the program with status
-// 130.
+// Makes signals end the program with status 130. Use it until install_stop_handlers(), while there
+// is no work to keep.
 void exit_on_stop_signals();
 
 // Installs the handlers and returns the flag that they set.
 const StopFlag& install_stop_handlers();
-// SIGUSR1 asks for the same: mpirun hands it on and lets the work end as it will.
+// Makes SIGUSR1 a request to stop, too: mpirun forwards it and waits for the work to end.
 void stop_on_user_signal();
 
 }  // namespace troffer

@@ -17,7 +17,7 @@ SolutionKind kind_of_solution(const std::string& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found) return SolutionKind::missing;
-  // A pipe gives its bytes but once.
+  // A pipe can be read only once.
   if (status.type() != std::filesystem::file_type::regular) return SolutionKind::radiosity;
   std::array<uint8_t, 8> first{};
   std::ifstream file(path, std::ios::binary);

@@ -1,6 +1,6 @@
-// The file of --solution: what a method prepares before the first viewing ray, kept for later runs.
-// Its first bytes tell whether it holds a radiosity solution, which `troffer radiosity` has
-// written, or cells, which are kept and added to by whoever uses them.
+// The file of --solution: preparation of a method, kept for later runs.
+// Its first bytes tell its kind: a radiosity solution, written by `troffer radiosity`, or cells,
+// which every run that uses them extends.
 #pragma once
 
 #include <memory>
@@ -12,15 +12,15 @@ namespace troffer {
 
 enum class SolutionKind { none, missing, radiosity, cells };
 
-// none: no file was asked for.
+// Returns the kind of the file. none: `path` is empty.
 SolutionKind kind_of_solution(const std::string& path);
 
-// What is kept for methods that take cells: that of the file, or nothing yet if there is no file;
-// null where the method takes none, or no file was asked for.
+// Returns the cells of the file, or an empty store if it does not exist. Null if the method uses no
+// cells, or if `path` is empty.
 std::unique_ptr<CellStore> cells_of_file(const PreparedScene& scene, Method method,
                                          Indirect indirect, const std::string& path);
 
-// Writes them, if there is anything new; store: null where there is nothing to keep.
+// Writes the cells if any are new. store: null if there is nothing to keep.
 void keep_cells(const PreparedScene& scene, const CellStore* store, const std::string& path,
                 bool is_quiet);
 

@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, 14> surface_columns{
 constexpr size_t first_number = 3, first_of_rectangle = 5, most_rows = 1000;
 constexpr double most_coordinate = 1e9, longest_side = 1e5, most_lift = 1e3;  // m
 
-// Empty fields are as if their column was not there.
+// Fields of a row. Empty fields count as missing columns.
 struct Fields {
   std::array<std::string, first_number> texts;
   std::array<double, surface_columns.size()> numbers{};

@@ -12,7 +12,7 @@ namespace {
 
 struct MethodOption {
   const char* name;
-  const char* methods;  // those that use it, as a sentence names them
+  const char* methods;  // names of the methods that use it, as in a sentence
 };
 
 // Options of render and measure that not every method uses.

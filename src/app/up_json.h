@@ -1,4 +1,4 @@
-// Which way is up, for the JSON of info and --stats.
+// The up direction in the JSON of `info` and --stats.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -12,7 +12,7 @@ namespace troffer {
 
 namespace {
 
-// The command that was typed; null where it is none.
+// Returns the command that was typed; null if it is unknown.
 const CLI::App* command_of(const CLI::App& program, int argc, const char* const* argv) {
   if (argc < 2) return nullptr;
   for (const CLI::App* c : program.get_subcommands({}))
@@ -29,7 +29,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-// "; did you mean --size?". "-size" has lost a dash.
+// Returns "; did you mean --size?". A word such as "-size" may lack a dash.
 std::string did_you_mean_option(const std::string& typed, const CLI::App& command) {
   std::string word = typed.substr(0, typed.find('='));
   if (word.size() > 2 && !word.starts_with("--")) word = "-" + word;
@@ -43,7 +43,7 @@ std::string see_help(const CLI::App& command) {
   return " (troffer help " + command.get_name() + " lists its options)";
 }
 
-// The rest are unknown options, and words for which there is no place.
+// Reports the first unexpected argument: an unknown option, or a surplus word.
 std::string unexpected(const CLI::App& command, int argc, const char* const* argv) {
   const std::vector<std::string> left = command.remaining(true);
   for (int i = 2; i < argc; ++i) {
@@ -58,7 +58,7 @@ std::string unexpected(const CLI::App& command, int argc, const char* const* arg
   return command.get_name() + " has no use for some of its arguments" + see_help(command);
 }
 
-// Arguments that a command needs and was not given.
+// Reports the first missing required argument.
 std::string missing(const CLI::App& command) {
   for (const CLI::Option* o : command.get_options()) {
     if (!o->get_required() || o->count() > 0) continue;
@@ -72,7 +72,7 @@ std::string missing(const CLI::App& command) {
   return "";
 }
 
-// An option that needs a value stands last, or before another one.
+// Reports an option whose value is missing, because it is last or another option follows.
 std::string without_value(const CLI::App& command, const std::string& what) {
   const std::string typed = what.substr(0, what.find(':'));
   for (const CLI::Option* o : command.get_options()) {

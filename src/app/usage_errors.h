@@ -1,4 +1,4 @@
-// Turns what is wrong with a command line into a message that says what to write.
+// Turns errors of the command line into messages that say what to write. run() prints them.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,11 +6,11 @@
 
 namespace troffer {
 
-// The message for a mistake that the parser found in `program`'s arguments (argv[1] on).
+// Returns the message for an error that the parser found in the arguments (argv[1] on).
 std::string usage_message(const CLI::App& program, int argc, const char* const* argv,
                           const CLI::ParseError& error);
 
-// "there is no command 'rendr'; did you mean 'render'? (troffer help lists the commands)".
+// Returns "there is no command 'rendr'; did you mean 'render'? (troffer help lists the commands)".
 std::string no_command(const CLI::App& program, const std::string& name);
 
 }  // namespace troffer

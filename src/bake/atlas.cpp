@@ -15,7 +15,7 @@ namespace {
 
 constexpr int64_t most_texels = int64_t(1) << 27;
 constexpr int most_pages = 64;
-// A texel is covered by what is at least this share of it, or of its chart's thinness.
+// Least covered area of a texel, relative to the texel, or to the triangle if that is smaller.
 constexpr double least_covered = 1e-9;
 
 int texels_along(double metres, double per_metre) {
@@ -50,7 +50,8 @@ bool fits_a_page(PackGroup group, int size) {
   return pack(alone, size, 1) > 0;
 }
 
-// The greatest density at which all fits one page, within a percent; 0: none.
+// Returns the highest density at which everything fits one page, within a percent; 0 if there is
+// none.
 double density_of_page(const BakedSurfaces& s, int size, int gutter) {
   double area = 0;
   for (const Stand& stand : s.stands)
@@ -76,7 +77,7 @@ void place_vertices(const BakedSurfaces& s, const std::vector<double>& per_metre
       const double d = per_metre_of(chart, s.stands[i], per_metre[i]);
       const TexelAt corner = groups[i].at[c];
       const TexelSize size = groups[i].sizes[c];
-      // What rounding up has left is shared out to both sides.
+      // The chart is centred in its rectangle, which is rounded up to whole texels.
       const double x = corner.x + (size.width - double(chart.size.x) * d) / 2;
       const double y = corner.y + (size.height - double(chart.size.y) * d) / 2;
       for (const uint32_t t : chart.triangles)
@@ -89,7 +90,7 @@ void place_vertices(const BakedSurfaces& s, const std::vector<double>& per_metre
   }
 }
 
-// The smallest page that holds all, doubled from 64 up to the largest; or that.
+// Returns the smallest page that holds all groups, doubling from 64 texels, or the largest one.
 int page_for(std::vector<PackGroup>& groups, int largest) {
   for (int size = 64; size < largest; size *= 2)
     if (pack(groups, size, 1) > 0) return size;
@@ -106,7 +107,7 @@ Atlas make_atlas(const BakedSurfaces& s, const AtlasOptions& o) {
     atlas.size = o.resolution;
     atlas.texels_per_metre = density_of_page(s, o.resolution, o.gutter);
     is_one = atlas.texels_per_metre > 0;
-    // Many small charts: their gutters alone fill a page.
+    // The gutters of many small charts may fill the page alone.
     if (!is_one) atlas.texels_per_metre = 1e-6;
   }
   std::vector<double> per_metre(s.stands.size(), atlas.texels_per_metre);
@@ -166,7 +167,7 @@ struct Covered {
   uint32_t triangle;
 };
 
-// Squares that a triangle has area in.
+// Appends the texels that a triangle overlaps.
 void add_covered(const FlatTriangle& t, uint32_t triangle, std::vector<Covered>& out) {
   const double y0 = std::min({t[0].y, t[1].y, t[2].y}), y1 = std::max({t[0].y, t[1].y, t[2].y});
   const double least = least_covered * std::min(1.0, std::abs(doubled_area(t)));
@@ -215,7 +216,7 @@ void TexelSites::pieces(size_t site, std::vector<Piece>& out) const {
     const FlatPolygon p = in_square(flat, texel.x, texel.y, texel.x + 1, texel.y + 1);
     const Piece whole = piece_of(mesh, triangle);
     const double all = doubled_area(flat);
-    // Weights of the corners at a place on the page. Those of a mirrored stand run the other way.
+    // Barycentric weights at a place on the page. A mirrored stand reverses the order of corners.
     const bool is_turned = mesh.triangle(triangle) != mesh.mesh().triangles[triangle];
     const auto weights = [&](const Vec2d& at) {
       std::array<float, 3> w{float(doubled_area({at, flat[1], flat[2]}) / all),

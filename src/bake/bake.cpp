@@ -21,8 +21,8 @@ namespace troffer {
 
 namespace {
 
-constexpr double share_of_sides = 0.05;  // of the progress
-// Texels that may be brighter than white, as a share of all.
+constexpr double share_of_sides = 0.05;  // share of the progress for finding lit sides
+// Share of texels that may be brighter than white.
 constexpr double most_clipped = 0.001;
 
 MethodSettings settings_of(const BakeOptions& o) {
@@ -37,7 +37,7 @@ MethodSettings settings_of(const BakeOptions& o) {
   return settings;
 }
 
-// What is at work while a scene is baked.
+// State of one baking run.
 class Baking {
  public:
   Baking(const PreparedScene& scene, const BakeOptions& options, const ProgressCallback& progress,
@@ -80,7 +80,7 @@ class Baking {
   double exposure(const std::vector<Rgb>& sent) const;
 };
 
-// Light, in lx.
+// Returns the light of all sites in lx, and reports progress.
 std::vector<SiteLight> Baking::light(const Integrator& integrator, const SiteList& sites,
                                      const SiteSettings& settings) {
   const auto tell = [&](double f) {
@@ -112,7 +112,7 @@ void Baking::count(const BakedSurfaces& surfaces, const std::vector<SiteLight>& 
   f.error_lx = std::sqrt(squares / double(f.sites));
 }
 
-// Pages of one value for each site.
+// Returns pages that hold value(i) for each site, with gutters filled.
 template <class Value>
 std::vector<Page> pages_of(const Atlas& atlas, int gutter, const TexelSites& sites,
                            const std::vector<SiteLight>& light, const Value& value) {
@@ -125,7 +125,7 @@ std::vector<Page> pages_of(const Atlas& atlas, int gutter, const TexelSites& sit
   return pages;
 }
 
-// Such that hardly a texel is brighter.
+// Returns a white value that all but a share most_clipped of the values stay below.
 double white_of(std::vector<float> values) {
   if (values.empty()) return 1;
   const auto at = std::ptrdiff_t(double(values.size() - 1) * (1 - most_clipped));
@@ -135,7 +135,7 @@ double white_of(std::vector<float> values) {
 }
 
 struct PngLook {
-  double scale = 1;  // of values, before they are coded
+  double scale = 1;  // factor on values before encoding
   bool has_alpha = false, is_deep = false;
 };
 
@@ -192,7 +192,7 @@ double Baking::exposure(const std::vector<Rgb>& sent) const {
   return b.is_black ? 0 : b.auto_stops;
 }
 
-// What surfaces send, for files without light.
+// Adds pictures of the light that surfaces send, for files without lights.
 void Baking::add_pictures(const BakedSurfaces& surfaces, const TexelSites& sites,
                           const std::vector<SiteLight>& light) {
   const SentLight base(scene_.scene);
@@ -248,7 +248,7 @@ void Baking::add_texels(const BakedSurfaces& surfaces, const TexelSites& sites,
 
 void Baking::add_vertices(const BakedSurfaces& surfaces, const VertexSites& sites,
                           const std::vector<SiteLight>& light) {
-  // By base colours of the vertices' surfaces, about: the pictures are not looked at.
+  // Only base colours count for exposure; textures are ignored.
   std::vector<Rgb> sent;
   for (size_t s = 0; s < surfaces.stands.size(); ++s) {
     const Material& m =

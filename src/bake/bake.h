@@ -1,8 +1,8 @@
-// Light of a scene, computed once for all its surfaces and kept with them: lightmaps, or colours of
-// vertices.
+// Computes the light of a scene for all its surfaces and stores it with them: as lightmaps, or as
+// vertex colours. `troffer bake` uses it.
 //
-// What is kept is irradiance E: of a texel the mean over what it covers of the surface. A surface
-// that scatters evenly sends base_color × E / pi.
+// The stored value is irradiance E in lx: for a texel, the mean over the part of the surface that
+// the texel covers. A Lambertian surface sends the radiance base_color × E / π.
 #pragma once
 
 #include <cstdint>
@@ -17,36 +17,39 @@
 
 namespace troffer {
 
+// Settings of bake().
 struct BakeOptions {
   BakedShading shading = BakedShading::lightmap;
   AtlasOptions atlas;
-  int samples = 64;                      // of a texel, or of a vertex
-  std::optional<double> exposure_stops;  // unlit, vertex_colors; none: as suits the surfaces
-  MeasureOptions light;                  // method and what it wants; spp is not used
+  int samples = 64;                      // per texel or vertex
+  std::optional<double> exposure_stops;  // for unlit and vertex_colors; none: automatic
+  MeasureOptions light;                  // method and its settings; spp is ignored
 };
 
+// Counts and means, for the summary.
 struct BakeFigures {
-  size_t charts = 0, stands = 0, sites = 0;  // sites: texels covered, or vertices
-  size_t layered = 0;                        // stands whose both sides have light of their own
-  size_t degenerate = 0;                     // triangles without area: without light
+  size_t charts = 0, stands = 0, sites = 0;  // sites: covered texels, or vertices
+  size_t layered = 0;                        // stands whose two sides are lit separately
+  size_t degenerate = 0;                     // triangles without area; they get no light
   double mean_lx = 0;                        // over all sites
-  double error_lx = 0;                       // root mean square of their standard errors
+  double error_lx = 0;                       // root mean square of the sites' standard errors
 };
 
+// Result of bake().
 struct BakeResult {
-  Scene scene;       // to be written, with …
-  BakedLight baked;  // … this
+  Scene scene;       // scene to write, together with `baked`
+  BakedLight baked;  // light of its surfaces
   Atlas atlas;       // size 0: none
-  // Per page: irradiance and its standard error, lx; gutters filled.
+  // Per page, in lx: irradiance and its standard error, gutters filled.
   std::vector<Image> irradiance, error;
   BakeFigures figures;
   std::vector<Warning> warnings;
   Counters counters;
-  bool is_complete = false;  // false: stopped, all else is empty
+  bool is_complete = false;  // false if stopped: everything else is empty
 };
 
-// `scene`: as_meshes(), prepared. UsageError as make_atlas has it. The result does not depend on
-// threads.
+// Bakes the light of a scene that as_meshes() made. Throws UsageError as make_atlas() does. The
+// result does not depend on the number of threads.
 BakeResult bake(const PreparedScene& scene, const BakeOptions& options,
                 const ProgressCallback& progress, const StopFlag& stop);
 

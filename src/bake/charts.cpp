@@ -13,20 +13,23 @@ namespace troffer {
 
 namespace {
 
-constexpr double least_cosine = 0.766;  // of 40 degrees: largest angle to a chart's normal
-constexpr float least_smooth = 0.7f;    // cosine between two normals of one corner: no crease
-// More would make the search for overlaps slow where triangles lie in each other's cells.
+constexpr double least_cosine = 0.766;  // cosine of 40 degrees, the largest angle to a chart's
+                                        // normal
+constexpr float least_smooth = 0.7f;  // least cosine between two normals at one corner; below it is
+                                      // a crease
+// A limit on a chart's triangles: the search for overlaps is slow if many share a cell.
 constexpr size_t most_triangles = 8192;
 constexpr uint32_t none = 0xffffffffu;
 
-// Triangles, their normals, and who shares an edge with whom.
+// Triangles with their normals, and their neighbours across edges.
 struct ChartSurface {
-  std::vector<Vec3d> normals;                   // unit; 0: not a triangle
+  std::vector<Vec3d> normals;                   // unit; 0 for degenerate triangles
   std::vector<double> areas;                    // m²
-  std::vector<std::array<uint32_t, 3>> beside;  // across edge k, from corner k to the next; none
+  std::vector<std::array<uint32_t, 3>> beside;  // triangle across edge k, from corner k to the
+                                                // next; or none
 };
 
-// Numbers that are equal where positions are.
+// Returns vertex numbers that are equal where positions are equal.
 std::vector<uint32_t> welded(const std::vector<Vec3>& positions) {
   std::vector<uint32_t> order(positions.size()), number(positions.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -50,7 +53,7 @@ std::vector<uint32_t> welded(const std::vector<Vec3>& positions) {
 struct Edge {
   uint32_t low, high;  // welded corners
   uint32_t triangle, side;
-  bool is_up;  // runs from low to high
+  bool is_up;  // the triangle passes the edge from low to high
 };
 
 bool is_smooth(const Mesh& mesh, const Edge& a, const Edge& b) {
@@ -80,7 +83,7 @@ void join_edges(const Mesh& mesh, const std::vector<uint32_t>& weld, ChartSurfac
     size_t end = i + 1;
     while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high)
       ++end;
-    // Where more meet, or two that face opposite ways, nobody knows which go on into which.
+    // If more than two triangles meet, or two that face opposite ways, continuity is undefined.
     const Edge &a = edges[i], &b = edges[end - 1];
     if (end - i == 2 && a.is_up != b.is_up && is_smooth(mesh, a, b)) {
       s.beside[a.triangle][a.side] = b.triangle;
@@ -127,7 +130,7 @@ struct ChartPlane {
   }
 };
 
-// The triangles of the chart that grows from `seed`; of those that are in none yet.
+// Returns the triangles of the chart that grows from `seed`, without triangles of other charts.
 std::vector<uint32_t> grown(const Mesh& mesh, const ChartSurface& s, uint32_t seed,
                             const ChartPlane& plane, std::vector<uint8_t>& is_taken) {
   std::vector<uint32_t> chart{seed};
@@ -167,8 +170,8 @@ std::vector<Vec2d> hull_of(std::vector<Vec2d> points) {
   return hull;
 }
 
-// The direction of the side of the smallest rectangle about points: that of an edge of their
-// hull [2]. Of many edges the longest ones are tried.
+// Returns the direction of the longer side of the smallest rectangle around points. The rectangle
+// has a side along an edge of the hull [2]; only the longest edges are tried.
 Vec2d side_of_rectangle(const std::vector<Vec2d>& points) {
   constexpr size_t most_edges = 48;
   const std::vector<Vec2d> hull = hull_of(points);
@@ -196,7 +199,7 @@ Vec2d side_of_rectangle(const std::vector<Vec2d>& points) {
   return best;
 }
 
-// Copies of the vertices of `from`, one for each group of triangles that uses them.
+// Copies the vertices of a mesh, once for each group of triangles that uses them.
 class Vertices {
  public:
   Vertices(const Mesh& from, ChartedMesh& out) : from_(from), out_(out) {
@@ -206,7 +209,7 @@ class Vertices {
     copy_.resize(from.positions.size());
     group_.assign(from.positions.size(), none);
   }
-  // The copies get `place(vertex)`.
+  // The copies get place(vertex) as their position in the chart.
   template <class Place>
   void add(uint32_t group, const std::vector<uint32_t>& triangles, const Place& place) {
     for (const uint32_t t : triangles)
@@ -255,7 +258,7 @@ void lay_out(const Mesh& mesh, const ChartPlane& plane, std::vector<uint32_t> tr
   out.charts.push_back({std::move(triangles), Vec2(upper - lower)});
 }
 
-// Triangles that are in no chart.
+// Adds the triangles that belong to no chart.
 void add_rest(const std::vector<uint32_t>& rest, Vertices& vertices, ChartedMesh& out) {
   vertices.add(none - 1, rest, [](uint32_t) { return Vec2{0, 0}; });
   out.degenerate = rest.size();

@@ -17,11 +17,12 @@ namespace troffer {
 
 namespace {
 
-constexpr float darkest = 0.01f;   // of the light beside it: dark up to here
-constexpr float lit = 0.1f;        // of the brightest samples' light: lit from here on
-constexpr size_t most_tested = 6;  // lit places that a dark one is tested against
+constexpr float darkest = 0.01f;   // relative to the light next to it: dark up to here
+constexpr float lit = 0.1f;        // relative to the brightest samples: lit from here on
+constexpr size_t most_tested = 6;  // lit places that each dark one is tested against
 
-// Just above the surface; curved ones hide themselves and do not count.
+// True if a segment slightly above the surface can test the pair. Curved surfaces would hide
+// themselves.
 bool can_be_tested(const LitPlace& a, const LitPlace& b, float offset) {
   return dot(a.normal, b.normal) > 0.999f && length(a.position - b.position) > 16 * offset;
 }
@@ -31,7 +32,7 @@ Ray between(const LitPlace& a, const LitPlace& b, float offset) {
   return segment(a.position + a.normal * height, b.position + b.normal * height);
 }
 
-// Mean light of the brightest quarter.
+// Returns the mean light of the brightest quarter.
 float bright_light(std::span<const LitPlace> samples) {
   std::vector<float> light;
   for (const LitPlace& s : samples) light.push_back(s.light);
@@ -42,7 +43,7 @@ float bright_light(std::span<const LitPlace> samples) {
   return sum / float(n);
 }
 
-// The nearest lit places, and some of the others.
+// Returns the nearest lit places and a selection of the others.
 std::vector<uint32_t> tested_with(const LitPlace& dark, std::span<const LitPlace> samples,
                                   std::vector<uint32_t> lit_ones) {
   const auto distance = [&](uint32_t i) { return length(samples[i].position - dark.position); };
@@ -56,7 +57,7 @@ std::vector<uint32_t> tested_with(const LitPlace& dark, std::span<const LitPlace
   return out;
 }
 
-// Texels by place on their pages.
+// Finds texels by their place on the pages.
 class TexelMap {
  public:
   TexelMap(const TexelSites& sites, const Atlas& atlas) : sites_(sites), atlas_(atlas) {
@@ -65,7 +66,7 @@ class TexelMap {
       number_[key(t.stand, t.x, t.y)] = i;
     }
   }
-  // Neighbours of the same chart.
+  // Returns the neighbours in the same chart.
   void neighbours(size_t site, std::vector<uint32_t>& out) const {
     out.clear();
     const TexelSites::Texel& t = sites_.texels()[site];
@@ -151,7 +152,7 @@ void forget_cut_off_texels(const PreparedScene& scene, const TexelSites& sites, 
       if (light[n].is_known) limit[i] = std::max(limit[i], luminance(light[n].irradiance));
     first.push_back(i);
   }
-  // Those behind them too, so that what is filled in takes nothing from the dark.
+  // Dark texels behind them go, too: otherwise they would darken the values that fill the gap.
   std::vector<uint32_t> behind;
   for (const uint32_t i : first) {
     map.neighbours(i, behind);
@@ -166,7 +167,7 @@ void forget_cut_off_texels(const PreparedScene& scene, const TexelSites& sites, 
 
 bool is_enclosed(const PreparedScene& scene, const LitPlace& place, float offset, float diagonal) {
   constexpr uint32_t looks = 16;
-  constexpr float near = 0.1f, metre = 1;  // of the scene's diagonal
+  constexpr float near = 0.1f, metre = 1;  // near: share of the scene's diagonal; metre: m
   const float limit = std::min(near * diagonal, metre);
   std::vector<Ray> rays;
   std::vector<Hit> hits(looks);

@@ -8,10 +8,10 @@ namespace troffer {
 namespace {
 
 constexpr double most_shared = 1e-3;
-// A triangle in more cells than this is compared with all others.
+// A triangle that covers more cells is compared with all others.
 constexpr double most_cells = 4096;
 
-// Whether an edge of `a` has all of `b` on its outer side.
+// True if all of `b` lies on the outer side of an edge of `a`.
 bool has_separating_edge(const FlatTriangle& a, const FlatTriangle& b) {
   const double turn = doubled_area(a) < 0 ? -1 : 1;
   for (size_t k = 0; k < 3; ++k) {

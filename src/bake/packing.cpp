@@ -13,7 +13,7 @@ struct Item {
   TexelSize size;
 };
 
-// High ones first: the low ones fill what is left.
+// Tall rectangles come first; low ones fill the gaps.
 void sort_for_packing(std::vector<Item>& items) {
   std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
     return a.size.height != b.size.height ? a.size.height > b.size.height
@@ -80,7 +80,7 @@ bool Skyline::add(const TexelSize& r, TexelAt& at) {
   }
   parts_.erase(parts_.begin() + std::ptrdiff_t(best), parts_.begin() + std::ptrdiff_t(last));
   parts_.insert(parts_.begin() + std::ptrdiff_t(best), {at.x, row + r.height, r.width});
-  // Parts of one height become one.
+  // Merge neighbouring parts of equal height.
   for (size_t i = best > 0 ? best - 1 : 0; i + 1 < parts_.size() && i <= best;) {
     if (parts_[i].y != parts_[i + 1].y) {
       ++i;

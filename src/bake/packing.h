@@ -1,4 +1,4 @@
-// Rectangles on pages.
+// Packs rectangles onto square pages. The atlas uses it; lengths are in texels.
 //
 // References: [1] Jylänki, "A Thousand Ways to Pack the Bin", 2010, §2.5 (skyline, bottom left).
 #pragma once
@@ -15,12 +15,12 @@ struct TexelAt {
   int x = 0, y = 0;
 };
 
-// One page that fills from row 0 up.
+// One page that fills from row 0 upward.
 class Skyline {
  public:
   explicit Skyline(int size) : size_(size), parts_{{0, 0, size}} {}
-  // Where a rectangle comes to lie as low as it can, then as far left; false where there is no
-  // room.
+  // Places a rectangle as low as possible, then as far left as possible. Returns false if there is
+  // no room.
   bool add(const TexelSize& rectangle, TexelAt& at);
 
  private:
@@ -30,19 +30,19 @@ class Skyline {
   int size_;
   std::vector<Part> parts_;  // left to right
 
-  // The lowest row on which a rectangle can stand from part i on; -1: none.
+  // Returns the lowest row for a rectangle that starts at part i; -1 if it does not fit.
   int row_at(size_t i, const TexelSize& rectangle) const;
 };
 
-// Rectangles that are to come on one page together.
+// Rectangles that must lie on one page.
 struct PackGroup {
   std::vector<TexelSize> sizes;
-  int page = -1;            // found
-  std::vector<TexelAt> at;  // found, one each
+  int page = -1;            // result
+  std::vector<TexelAt> at;  // result, one per rectangle
 };
 
-// Finds places for all groups: number of pages of size × size. 0: a group needs more than a page,
-// or more than `most_pages` would be needed.
+// Places all groups and returns the number of pages of size × size. Returns 0 if a group needs more
+// than a page, or if more than `most_pages` would be needed.
 int pack(std::vector<PackGroup>& groups, int size, int most_pages);
 
 }  // namespace troffer

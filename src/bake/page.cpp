@@ -6,7 +6,8 @@ namespace troffer {
 
 namespace {
 
-// A body that hides more of a floor than this to each side hides it from all who could see.
+// Limit on filling from the border of a hole. Nobody sees the middle of a larger one: the body that
+// covers it hides it.
 constexpr int most_rounds = 64;
 
 }  // namespace
@@ -26,7 +27,7 @@ void Page::set(int x, int y, uint32_t chart, const PageTexel& texel, bool is_kno
   if (is_known) texels_[i] = texel;
 }
 
-// Of the chart that covers the texel; of a texel that none covers, of the first one met.
+// Averages neighbours of the texel's chart; without a chart, those of the first neighbour's chart.
 bool Page::mean_of_neighbours(size_t texel, PageTexel& out, uint32_t& chart) const {
   const int x = int(texel % size_t(size_)), y = int(texel / size_t(size_));
   chart = chart_[texel];
@@ -53,7 +54,7 @@ bool Page::mean_of_neighbours(size_t texel, PageTexel& out, uint32_t& chart) con
   return true;
 }
 
-// Takes what neighbours had before the round; those that get nothing stay open.
+// Fills texels from the values before the round; texels without valued neighbours stay open.
 void Page::fill_round(std::vector<size_t>& open) {
   struct Found {
     size_t texel;
@@ -77,7 +78,7 @@ void Page::fill_round(std::vector<size_t>& open) {
   }
 }
 
-// Texels of no chart beside these.
+// Returns the texels of no chart next to these.
 std::vector<size_t> Page::around(const std::vector<size_t>& texels) const {
   std::vector<size_t> out;
   for (const size_t i : texels) {

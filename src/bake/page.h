@@ -1,4 +1,4 @@
-// A page of an atlas while it is filled.
+// One page of an atlas while it is filled. bake() sets texels and fills the gaps.
 #pragma once
 
 #include <cstdint>
@@ -8,21 +8,21 @@
 
 namespace troffer {
 
-// What a texel holds. Holes of cut-outs: alpha 0.
+// Value of a texel. Cut-outs have alpha 0.
 struct PageTexel {
   Rgb color{0};
   float alpha = 1, error = 0;
 };
 
+// A square page of texels.
 class Page {
  public:
   explicit Page(int size);
 
-  // A texel that the chart of that number covers; known: false: its value is to come of others.
+  // Sets a texel that a chart covers. is_known = false: fill() takes its value from neighbours.
   void set(int x, int y, uint32_t chart, const PageTexel& texel, bool is_known);
-  // Texels without value get the mean of neighbours that have one: those that a chart covers of its
-  // own, however far; and up to `gutter` texels around charts, so that what blends neighbours finds
-  // nothing else there.
+  // Gives texels without a value the mean of their neighbours: all texels that a chart covers, and
+  // up to `gutter` texels around charts, so that filtering across the border finds the same value.
   void fill(int gutter);
 
   int size() const { return size_; }

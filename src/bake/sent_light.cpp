@@ -14,7 +14,7 @@ Rgb reflectance_of_metal(const Material& m) {
   return (below * below + k2) / (above * above + k2);
 }
 
-// Texture coordinates over a triangle of a page: at its middle, and by texel.
+// Texture coordinates at a place on a page, and their change per texel.
 struct Look {
   Vec2 at, along_x, along_y;
 };

@@ -1,4 +1,5 @@
-// What surfaces send of the light they get, as pictures without light of their own show it.
+// Base colour and coverage of surfaces at texels, for pictures that replace lights (unlit,
+// emissive).
 #pragma once
 
 #include <vector>
@@ -8,13 +9,12 @@
 
 namespace troffer {
 
-// Colour by which a material scatters evenly, and how much of the surface is there, at texels: the
-// mean over each. scene: the one that was lit, whose images have levels.
+// Averages over each texel. scene: the prepared scene, whose textures have mip levels.
 class SentLight {
  public:
   explicit SentLight(const Scene& scene) : scene_(scene) {}  // must outlive this
 
-  // color: base colour; alpha: 1 where nothing cuts holes.
+  // Returns color: base colour; alpha: coverage.
   PageTexel base(const BakedSurfaces& surfaces, const Atlas& atlas, const TexelSites& sites,
                  size_t site) const;
 

@@ -8,11 +8,11 @@ namespace troffer {
 namespace {
 
 constexpr int samples_of_side = 32;
-constexpr float least_lit = 0.002f;  // of the other side's light: dark below
-constexpr float least_room = 0.5f;   // of looks that end at fronts
+constexpr float least_lit = 0.002f;  // relative to the other side's light: dark below
+constexpr float least_room = 0.5f;   // share of rays that must hit fronts
 
-// Charts that can be seen from both sides, where they stand: site 2 i is the front of the i-th, the
-// next its back.
+// Charts that are visible from both sides. Site 2 i is the front of chart i, the next site its
+// back.
 class SideSites final : public SiteList {
  public:
   struct ChartAt {

@@ -1,4 +1,5 @@
-// Which sides of surfaces get light, found by asking for a little of it.
+// Finds which sides of two-sided surfaces get light, by a few samples of each chart. bake() uses
+// it.
 #pragma once
 
 #include <vector>
@@ -8,10 +9,10 @@
 
 namespace troffer {
 
-// For every chart of surfaces that are seen from both sides, per BakedSurfaces::charted; empty for
-// the others. A chart of a mesh that stands in several places has the sides that it needs in any of
-// them. A side that is dark counts where it looks into a room (at fronts of surfaces): nothing of
-// the other side's light may show there. Empty once stopped.
+// Returns the lit sides of every chart of two-sided surfaces, by BakedSurfaces::charted; empty for
+// other surfaces. A chart of a mesh with several instances gets the sides that it needs in any of
+// them. A dark side counts if it faces a room (rays from it hit fronts of surfaces), because light
+// of the other side must not show there. Returns an empty list if stopped.
 std::vector<std::vector<LitSides>> lit_sides(const PreparedScene& scene,
                                              const Integrator& integrator,
                                              const BakedSurfaces& surfaces,

@@ -21,11 +21,12 @@ namespace troffer {
 
 namespace {
 
-// Sites that are lit together, and samples of them together, at most: a stop waits for them.
+// Limits of a block of sites; a stop takes effect between blocks.
 constexpr size_t most_sites_of_block = 64, most_samples_of_block = 4096;
 constexpr int most_sets_of_site = 4;
-constexpr size_t looks = 8;  // from a sample, before it is taken to be within a body
-// Light within a body, as a share of that before it, at most.
+constexpr size_t looks = 8;  // rays from a sample that must all hit backs before it counts as
+                             // inside a body
+// Samples inside a body are left out if their mean light is at most this share of the others'.
 constexpr float most_within = 0.01f;
 constexpr uint64_t of_looks = 0x6c6f'6f6b, of_sites = 0x7369'7465;
 
@@ -38,7 +39,7 @@ struct Place {
   Vec3 position, normal;
 };
 
-// Weight of corner 0 where it is spread by itself: the inverse of 3t² - 2t³.
+// Samples the weight of corner 0 in proportion to itself: the inverse of the CDF 3t² - 2t³.
 float hat_weight(float u) {
   return 0.5f - std::sin(std::asin(std::clamp(1 - 2 * u, -1.0f, 1.0f)) / 3);
 }
@@ -57,14 +58,14 @@ Place place_on(const Piece& piece, const Vec2& u) {
   const auto& p = piece.positions;
   const auto& n = piece.normals;
   Place place{p[0] + (p[1] - p[0]) * b + (p[2] - p[0]) * c, n[0] * a + n[1] * b + n[2] * c};
-  // A normal that leans far over would look into the surface.
+  // An interpolated normal that leans too far would look into the surface.
   const float size = length(place.normal);
   const bool is_sound = size > 0.1f && dot(place.normal, piece.geometric_normal) > 0.5f * size;
   place.normal = is_sound ? place.normal / size : piece.geometric_normal;
   return place;
 }
 
-// Pieces of one site, to be picked by weight.
+// Pieces of one site, with cumulated weights.
 struct Pieces {
   std::vector<Piece> all;
   std::vector<double> sums;
@@ -81,7 +82,7 @@ struct Pieces {
     const double at = double(pick) * sums.back();
     auto i = size_t(std::upper_bound(sums.begin(), sums.end(), at) - sums.begin());
     i = std::min(i, all.size() - 1);
-    // What is left of the number picks nothing more: each piece is sampled by numbers of its own.
+    // The rest of `pick` is not used: `u` samples the piece.
     return place_on(all[i], u);
   }
 };
@@ -101,7 +102,7 @@ Seen seen_by(const PreparedScene& scene, const Ray& ray, const Hit& hit) {
   return dot(normal, ray.direction) > 0 ? Seen::back : Seen::front;
 }
 
-// Which places look at backs alone: one look each, and more where that meets a back.
+// Returns one flag per place: 1 if all rays from it hit backs. A ray that does not ends the test.
 std::vector<uint8_t> within_bodies(const PreparedScene& scene, const std::vector<Place>& places,
                                    float offset, uint64_t stream) {
   std::vector<uint8_t> is_within(places.size(), 1);
@@ -145,8 +146,8 @@ struct SiteSamples {
   bool has_area = false;
 };
 
-// Backs alone do not make a body: a room may have all its walls turned outward. So samples within
-// one count unless they are dark beside the others.
+// Removes samples inside bodies if they are dark next to the others. Hitting only backs does not
+// prove a body: all walls of a room may face outward.
 void leave_out_within(std::vector<Sample>& samples) {
   Sum open, within;
   for (const Sample& s : samples) {
@@ -189,7 +190,7 @@ SiteLight light_of(SiteSamples& site) {
     ++used;
     sets.add({}, double(luminance(sum.mean())));
   }
-  // Errors of many sites are taken together, so without what Student's t makes of a single one's.
+  // Errors are averaged over many sites, so the factor of Student's t for a single site is removed.
   if (used > 1) out.error = float(sets.standard_error() * 1.959964 / t_quantile_95(used - 1));
   return out;
 }
@@ -198,10 +199,10 @@ struct Worker {
   std::unique_ptr<IntegratorScratch> scratch;
   Pieces pieces;
   std::vector<Place> places;
-  std::vector<uint32_t> sites;  // of the places, counted within the block
+  std::vector<uint32_t> sites;  // site of each place, within the block
   SensorBatch sensors;
   RadianceBatch out;
-  size_t first = 0;  // site of the block
+  size_t first = 0;  // first site of the block
 };
 
 std::string name_of_sensor(const void* worker, size_t i) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float fineness_of_dark = 0.125f;
 
-// Light goes through it, and hardly any of it comes back diffusely.
+// True if light passes through and hardly any is reflected diffusely.
 bool is_clear(const Material& m) {
   return m.kind == MaterialKind::dielectric ||
          (m.transmission.value > 0.5f && m.transmission.texture < 0);
@@ -36,7 +36,7 @@ bool has_textures_by_second_set(const Scene& scene, const Material& m) {
   return is_any;
 }
 
-// Of one mesh; warnings are the caller's, for threads.
+// Result for one mesh. The caller collects warnings, since meshes are charted in parallel.
 struct Charting {
   ChartedMesh charted;
   bool has_unfit_set = false;
@@ -77,7 +77,7 @@ void list_stands(BakedSurfaces& s) {
   }
 }
 
-// Spheres and disks that do not shine become meshes; the others are counted anew.
+// Turns spheres and disks that do not emit into meshes, and renumbers the others.
 void round_to_meshes(Scene& scene) {
   std::vector<Sphere> spheres;
   std::vector<Disk> disks;
@@ -101,7 +101,7 @@ void round_to_meshes(Scene& scene) {
   scene.disks = std::move(disks);
 }
 
-// Some charts of a mesh, as a mesh.
+// Builds a mesh from some charts of another.
 class ChartPicker {
  public:
   ChartPicker(const ChartedMesh& from, bool is_layer) : from_(from), is_layer_(is_layer) {
@@ -117,7 +117,7 @@ class ChartPicker {
     add_triangles(chart.triangles, is_turned, &added);
     out_.charts.push_back(std::move(added));
   }
-  // Triangles in no chart.
+  // Adds the triangles that belong to no chart.
   void add_rest() {
     std::vector<uint8_t> is_in(from_.mesh.triangles.size(), 0);
     for (const Chart& c : from_.charts)
@@ -154,7 +154,7 @@ class ChartPicker {
       if (chart) chart->triangles.push_back(uint32_t(out_.mesh.triangles.size()));
       out_.mesh.triangles.push_back(to);
     }
-    for (const uint32_t v : used) number_[v] = none;  // another layer has its own
+    for (const uint32_t v : used) number_[v] = none;  // another layer copies its vertices again
   }
   void add_vertex(uint32_t v, bool is_turned) {
     const Mesh& m = from_.mesh;
@@ -166,7 +166,7 @@ class ChartPicker {
   }
 };
 
-// Charts of one side, and those of both.
+// Charts lit on one side, and charts lit on both.
 struct Divided {
   ChartedMesh single, layers;
 };
@@ -186,7 +186,7 @@ Divided divided(const ChartedMesh& from, const std::vector<LitSides>& sides) {
   return {single.take(), layers.take()};
 }
 
-// The same material, seen from its front alone; made once.
+// Copies materials as one-sided ones, each at most once.
 class OneSided {
  public:
   explicit OneSided(Scene& scene) : scene_(scene) { made_.assign(scene.materials.size(), 0); }
@@ -268,7 +268,7 @@ BakedSurfaces with_sides(BakedSurfaces from, const std::vector<std::vector<LitSi
     Divided d = divided(from.charted[i], sides[i]);
     if (!d.layers.charts.empty()) {
       d.layers.mesh.material = one_sided.of(d.layers.mesh.material);
-      // All in layers: it takes the mesh's own place.
+      // If all charts are layers, they replace the mesh.
       if (d.single.mesh.triangles.empty()) {
         d.single = std::move(d.layers);
       } else if (is_plain) {

@@ -1,4 +1,4 @@
-// A scene's surfaces as light is baked for them, and as they are written: meshes with charts.
+// Prepares a scene's surfaces for baking and for export: meshes with charts. bake() uses it.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,27 @@
 
 namespace troffer {
 
-// The scene in meshes as a file holds them: round bodies that do not shine as triangles, triangles
-// that shine apart from those that do not. Its light is the same, but for what triangles leave of
-// round bodies.
+// Returns the scene with the meshes of an exported file: spheres and disks that do not emit become
+// triangles, and emitting triangles get meshes of their own. Light is unchanged except for the
+// tessellation.
 Scene as_meshes(Scene scene);
 
-// What gets light of its own: a mesh where it stands.
+// A surface that is lit separately: a mesh in one place.
 struct Stand {
-  uint32_t charted = 0;  // of BakedSurfaces::charted
+  uint32_t charted = 0;  // index into BakedSurfaces::charted
   bool is_instance = false;
-  uint32_t number = 0;  // of the scene's meshes, or of its instances
-  float scale = 1;      // metres in the world for one of the mesh
+  uint32_t number = 0;  // index into the scene's meshes, or instances
+  float scale = 1;      // world metres per metre of the mesh
 };
 
+// Surfaces of a scene with their charts.
 struct BakedSurfaces {
-  Scene scene;  // to be written
-  std::vector<ChartedMesh>
-      charted;                // of meshes, then of instanced ones; of those without light empty
-  std::vector<Stand> stands;  // with light
+  Scene scene;  // scene to write
+  // Charts of meshes, then of instanced meshes; empty for those without baked light.
+  std::vector<ChartedMesh> charted;
+  std::vector<Stand> stands;  // surfaces with baked light
   WarningLog warnings;
-  size_t charts = 0, degenerate = 0;  // in all that is stored
+  size_t charts = 0, degenerate = 0;  // counted over stored meshes
 
   MeshInWorld mesh(const Stand& stand) const {
     return stand.is_instance
@@ -43,26 +44,26 @@ struct BakedSurfaces {
   }
 };
 
-// Charts for all meshes that neither shine nor are clear glass. Second sets of texture coordinates
-// that can hold a lightmap serve as they are laid out; others are replaced, unless textures go by
-// them. threads: 0: all cores.
+// Makes charts for all meshes that neither emit nor are clear glass. A second set of texture
+// coordinates that can hold a lightmap is used as it is; otherwise it is replaced, unless textures
+// use it. threads: 0: all cores.
 BakedSurfaces surfaces_of(Scene scene, int threads);
 
-// Which sides of a chart get light.
+// Sides of a chart that get light.
 enum class LitSides : uint8_t {
   front,
-  back,        // the chart is turned over
-  both,        // two layers of triangles, each seen from its front
-  front_more,  // both, the back in few texels: it is dark
+  back,        // the chart is flipped
+  both,        // two layers of triangles, each visible from its front
+  front_more,  // both sides; the dark back gets few texels
   back_more,
 };
 
-// The surfaces with every chart's sides (one list per BakedSurfaces::charted; empty: fronts): where
-// both get light, the mesh is divided.
+// Divides meshes whose charts get light on both sides. sides: one list per BakedSurfaces::charted;
+// an empty list means fronts only.
 BakedSurfaces with_sides(BakedSurfaces surfaces, const std::vector<std::vector<LitSides>>& sides);
 
-// Moves layers that lie in one place apart, each to its front by a few roundings of coordinates:
-// for readers that show the backs of what shines, as troffer does.
+// Moves the two layers of a place apart, each toward its front by a few rounding errors of
+// coordinates. Readers that show the backs of emitting surfaces need this; troffer is one.
 void lift_layers(BakedSurfaces& surfaces);
 
 }  // namespace troffer

@@ -1,4 +1,4 @@
-// What lies about the vertices of meshes.
+// Lists the vertices of meshes as sites, for baking vertex colours.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,9 @@
 
 namespace troffer {
 
-// Every vertex of every stand, in their order. Its value is the mean over the triangles that it is
-// a corner of (of its chart, as charts share no vertices), by the weight that it has there.
+// Every vertex of every stand, in order. Its value is the mean over the triangles around it,
+// weighted by its barycentric weight. Charts share no vertices, so only triangles of its chart
+// count.
 class VertexSites final : public SiteList {
  public:
   explicit VertexSites(const BakedSurfaces& surfaces);  // must outlive this
@@ -20,7 +21,7 @@ class VertexSites final : public SiteList {
 
  private:
   struct Corners {
-    std::vector<size_t> first;  // per vertex, of `triangles`; and the end
+    std::vector<size_t> first;  // per vertex: start in `triangles`; the last entry is the end
     std::vector<uint32_t> triangles;
   };
   const BakedSurfaces& surfaces_;

@@ -1,6 +1,6 @@
 // Processes that share work, as threads do within one process. Implemented for MPI. All processes
 // have the same input and call the same functions in the same order. Rank 0 leads: it does what
-// only one process may do. Used by renderers and solvers; docs/mpi.md has the usage.
+// only one process may do. Used by renderers and solvers; docs/reference/mpi.md has the usage.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // Reflection and transmission at a hit: evaluates, samples and gives densities of a material's
 // scattering function. All integrators use it; make_bsdf() builds one per hit. A Bsdf is plain data
-// that points into BsdfTables. docs/materials.md describes each model and how well it conserves
+// that points into BsdfTables. docs/reference/materials.md describes each model and how well it conserves
 // energy.
 //
 // Directions are unit vectors in the local shading frame and point away from the surface. z is the

@@ -1,5 +1,5 @@
 // Cells that are kept for later runs, with their rows and direct light. Another view, or a
-// later run, starts from it and adds what it sees beyond (docs/cells.md, "Walk-throughs"). Kept in
+// later run, starts from it and adds what it sees beyond (docs/method/cells.md, "Walk-throughs"). Kept in
 // a file (`--solution`).
 #pragma once
 

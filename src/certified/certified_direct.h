@@ -6,7 +6,7 @@
 // and rough transmitting surfaces, get a fixed number of shadow rays (source_sampler.h).
 //
 // Unbiased. Hits are clustered and found occluders are reused within a batch, so the noise of a
-// result depends on the batch; its mean does not. References: docs/certified.md.
+// result depends on the batch; its mean does not. References: docs/method/certified.md.
 #pragma once
 
 #include <memory>

@@ -7,7 +7,7 @@
 // hits the BRDF is integrated over the visible part of the source.
 //
 // Where lights are many, most are sampled at random instead; so are lights without certificates
-// (drawn_lights.h). Unbiased. Method: docs/certified.md.
+// (drawn_lights.h). Unbiased. Method: docs/method/certified.md.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,7 @@ namespace troffer {
 namespace {
 
 // Factor on the number of samples, because visibility behind scattered facets is unordered
-// (docs/certified.md, "Lights at infinity").
+// (docs/method/certified.md, "Lights at infinity").
 constexpr double clutter = 2;
 // Least share of the light assumed to arrive when the number of samples is chosen.
 constexpr double least_open = 0.02;

@@ -1,5 +1,5 @@
 // Makes cache cells where pilot gather rays hit, and where rays from cells hit. Ends when cells
-// without a row carry a negligible share of the light (docs/cells.md). Called once per picture or
+// without a row carry a negligible share of the light (docs/method/cells.md). Called once per picture or
 // list of points (methods/methods.cpp).
 #pragma once
 
@@ -32,11 +32,10 @@ struct CellBuilderOptions {
   // Limit of the number of cells; with more, make_cells() returns null.
   double most_cells = std::numeric_limits<double>::infinity();
   ProcessGroup* group = nullptr;  // processes that make the same cells together; may be null
-  GatheringPoints points {  // Once set, no further rows are made. The light that only they would
-                            // bring is missing;
-    // CellStatistics::unresolved estimates its share. Null: never set.
-    const StopFlag* enough = nullptr;
-  };  // how the pilot's points gather; most_rays 0: there are none
+  GatheringPoints points{};       // how the pilot's points gather; most_rays 0: there are none
+  // Once set, no further rows are made. The light that only they would bring is missing;
+  // CellStatistics::unresolved estimates its share. Null: never set.
+  const StopFlag* enough = nullptr;
 };
 
 // Makes cells, or adds what the pilot needs to those of `store`, which stay as they are.

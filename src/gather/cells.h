@@ -1,4 +1,4 @@
-// Light between surfaces, solved on cache cells (cells/cell_map.h, docs/cells.md), and its lookup
+// Light between surfaces, solved on cache cells (cells/cell_map.h, docs/method/cells.md), and its lookup
 // by gather rays. Made by make_cells() (cell_builder.h); used by GatherPass and CellsIndirect. Any
 // number of threads may call const functions, each with its own scratch.
 #pragma once

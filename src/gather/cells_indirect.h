@@ -1,4 +1,4 @@
-// Indirect light by gather rays that read cells (docs/cells.md). First hits of viewing rays take
+// Indirect light by gather rays that read cells (docs/method/cells.md). First hits of viewing rays take
 // the fit of the picture's records where it holds, and gather for themselves elsewhere.
 #pragma once
 

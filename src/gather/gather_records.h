@@ -1,7 +1,7 @@
 // Irradiance gathered for a picture before its viewing rays are shaded. One ray through the middle
 // of every pixel finds the matte surfaces that it sees: directly, in mirrors and through glass.
 // Each gets 8 gather rays, as many more as the asked error needs, and a linear fit over neighbours
-// on the same surface. Viewing rays look up the result (CellsIndirect; docs/cells.md).
+// on the same surface. Viewing rays look up the result (CellsIndirect; docs/method/cells.md).
 //
 // The result of a pixel depends on the pixels around it, not on tiles, threads or the window.
 #pragma once

@@ -55,7 +55,7 @@ void warn_of_weak_surfaces(Scene& scene) {
   scene.warnings.add(fmt::format(
       "surfaces emit {:.3g} lm in all, {:.3g} cd/m2 at most, beside {:.4g} lm of lamps: Blender "
       "exports emission without the factor 683 that lamps get (--emission-scale 683; "
-      "docs/from-blender.md)",
+      "docs/guide/from-blender.md)",
       surfaces_lm, brightest, lamps_lm));
 }
 

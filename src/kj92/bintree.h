@@ -7,7 +7,7 @@
 // few rays.
 // The estimate is biased, because the number and places of rays depend on earlier results.
 // References: [1] Kok & Jansen, "Adaptive Sampling of Area Light Sources in Ray Tracing Including
-//   Diffuse Interreflection", Eurographics '92, §3 and §4. [rule n], [reuse]: docs/bintree.md.
+//   Diffuse Interreflection", Eurographics '92, §3 and §4. [rule n], [reuse]: docs/method/bintree.md.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@
 
 namespace troffer {
 
-// Settings of one bintree; the numbers in brackets are rules of docs/bintree.md.
+// Settings of one bintree; the numbers in brackets are rules of docs/method/bintree.md.
 struct BintreeOptions {
   // Initial rays, spread evenly [rule 1]. Rounded up to a power of two; at least 1.
   int initial_rays = 8;

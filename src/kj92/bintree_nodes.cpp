@@ -122,7 +122,7 @@ void BintreeNodes::set_result(int32_t leaf, bool is_visible, float kernel) {
 // variance of the mean is estimated. This is the area-weighted variance of all rays of the subtree,
 // divided by their number less one, as if they were independent. It ignores stratification and thus
 // overestimates, which is intended: sums over halves of estimated variances [2] vanish once flags
-// are wrong, and stop far too early (docs/bintree.md).
+// are wrong, and stop far too early (docs/method/bintree.md).
 void BintreeNodes::summarise(int32_t i) {
   BintreeNode& n = nodes_[size_t(i)];
   const BintreeNode &a = (*this)[n.first_child], &b = (*this)[n.first_child + 1];

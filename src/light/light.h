@@ -59,7 +59,7 @@ LightPrimitive make_piece(const Scene& scene, const Light& light, const Box& sce
 std::unique_ptr<const Portal> make_portal(const Scene& scene, const Light& light,
                                           const LightPrimitive& p);
 
-// The shape of a light's pieces by which its visibility can be proved (docs/certified.md).
+// The shape of a light's pieces by which its visibility can be proved (docs/method/certified.md).
 enum class CertificateShape : uint8_t { none, flat, sphere };
 CertificateShape certificate_shape(const Scene& scene, const Light& light);
 

@@ -1,5 +1,5 @@
 // Forecast of what a picture costs by path tracing, from a few thousand test paths. The default
-// method compares it with the least cost of a picture by cells (methods.cpp; docs/cells.md,
+// method compares it with the least cost of a picture by cells (methods.cpp; docs/method/cells.md,
 // "Paths").
 //
 // Cost is counted in rays, never in seconds. The choice is therefore the same on every machine, for

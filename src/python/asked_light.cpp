@@ -17,7 +17,7 @@ namespace py = pybind11;
 
 namespace {
 
-// Of a str or an os.PathLike.
+// Returns the path of a str or an os.PathLike.
 std::string path(const py::handle& value) {
   return py::module_::import("os").attr("fspath")(value).cast<std::string>();
 }
@@ -27,7 +27,7 @@ std::string text(const py::handle& value, const char* expected) {
   return value.cast<std::string>();
 }
 
-// The shortest text that reads as this very number.
+// Formats a number as the shortest text that parses to the same value.
 std::string number(const py::handle& value) {
   return fmt::format("{}", py::float_(py::reinterpret_borrow<py::object>(value)).cast<double>());
 }
@@ -36,7 +36,7 @@ std::string joined(const std::vector<std::string>& parts) {
   return fmt::format("{}", fmt::join(parts, ","));
 }
 
-// Items that are not one text.
+// Returns the items of a sequence that is no str.
 std::vector<py::object> items(const py::handle& value, const char* expected) {
   if (py::isinstance<py::str>(value) || !py::hasattr(value, "__iter__"))
     throw py::type_error(expected);
@@ -51,7 +51,7 @@ std::string numbers(const py::handle& value, const char* expected) {
   return joined(parts);
 }
 
-// A path, or (path, numbers…) of which at most `most`.
+// Parses a path, or a sequence of a path and at most `most` numbers.
 std::vector<std::string> path_and_numbers(const py::handle& value, size_t most,
                                           const char* expected) {
   if (!py::isinstance<py::tuple>(value) && !py::isinstance<py::list>(value)) return {path(value)};
@@ -64,7 +64,7 @@ std::vector<std::string> path_and_numbers(const py::handle& value, size_t most,
   return parts;
 }
 
-// A datetime, or its text.
+// Returns the text of a datetime, or the given text.
 std::string moment(const py::handle& value) {
   if (!py::hasattr(value, "isoformat")) return text(value, "at: its time is a text or a datetime");
   if (value.attr("utcoffset")().is_none()) throw UsageError("at: a datetime must have a time zone");
@@ -92,7 +92,7 @@ std::string portal(const py::handle& value) {
   return joined(corners);
 }
 
-// One or several: of several, what the first one holds is no number.
+// Parses one portal or several. In a list of several, the first one's first item is no number.
 std::vector<std::string> portals(const py::handle& value) {
   if (py::isinstance<py::str>(value)) return {portal(value)};
   const std::vector<py::object> all = items(value, "portal: a name, or four corners (x, y, z)");
@@ -109,7 +109,7 @@ std::vector<std::string> portals(const py::handle& value) {
 std::string environment(const py::handle& value) {
   std::vector<std::string> parts =
       path_and_numbers(value, 1, "environment: a path, or (path, scale)");
-  // So that a comma in the file's name is not taken for the one before a scale.
+  // The explicit scale keeps a comma in the file name from being taken for a separator.
   if (parts.size() == 1) parts.emplace_back("1");
   return joined(parts);
 }

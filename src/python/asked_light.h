@@ -1,4 +1,4 @@
-// What a script asks for in light, in the words of the program's options.
+// Converts light that a script asks for into the program's options. Scene.add_light() uses it.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -7,15 +7,15 @@
 
 namespace troffer {
 
-// The keyword arguments of Scene.add_light() as DaylightOptions, bit for bit what they would be if
-// typed. What nobody asked for stays dark. TypeError for what is of another kind, UsageError for
-// what has no meaning.
+// Returns the keyword arguments of Scene.add_light() as DaylightOptions, exactly as if they were
+// typed. Light that is not asked for stays off. Throws TypeError for values of a wrong type,
+// UsageError for meaningless values.
 DaylightOptions daylight_options(const pybind11::kwargs& asked);
 
-// A message about options in a script's words: "--some-option" is some_option.
+// Rewrites option names in a message as a script spells them: "--some-option" becomes some_option.
 std::string in_script_words(const std::string& message);
 
-// What help() says of them.
+// Documentation of add_light() for help().
 extern const char* const add_light_help;
 
 }  // namespace troffer

@@ -31,7 +31,7 @@ Vec3d vec(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};
 }
 
-// The lights of one name; the scene lives as long.
+// The lights of one name; the scene stays alive with the handle.
 struct LightHandle {
   std::shared_ptr<ScriptScene> scene;
   std::string name;

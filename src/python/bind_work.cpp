@@ -26,8 +26,8 @@ namespace {
 
 using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-// The pixels themselves, which `owner` keeps: (height, width, 3), or (height, width) of a layer of
-// one channel.
+// Returns a view of the pixels, which `owner` keeps alive: (height, width, 3), or (height, width)
+// for a layer of one channel.
 py::array view_of(const Layer& layer, const py::object& owner) {
   const Image& image = layer.image;
   const py::ssize_t w = image.width, h = image.height, pixel = sizeof(Rgb), channel = sizeof(float);
@@ -88,7 +88,7 @@ Aov aov_named(const std::string& name) {
   throw UsageError("there is no layer '" + name + "'");
 }
 
-// What both kinds of work are told.
+// Arguments that render() and measure() share.
 struct Common {
   std::string method = "certified", indirect = "auto";
   double error = 0.01;
@@ -114,7 +114,7 @@ struct Common {
   }
 };
 
-// The radiosity that some methods stand on; null for others, and where `stop` was set.
+// Prepares the radiosity that some methods need. Null for other methods, and if `stop` was set.
 template <class Options>
 std::unique_ptr<Preparation> prepared_for(const PreparedScene& scene, const Options& o,
                                           const StopFlag& stop) {
@@ -168,7 +168,8 @@ std::unique_ptr<RenderResult> render_scene(ScriptScene& s, const py::object& cam
   return result;
 }
 
-// (n, 3): their normals look along the axis that the scene stands on; (n, 6): x, y, z and normal.
+// Parses an array of shape (n, 6) with positions and normals, or (n, 3) with positions alone and
+// `up` as the normal.
 std::vector<MeasuringPoint> measuring_points(const Points& array, Vec3 up) {
   if (array.ndim() != 2 || (array.shape(1) != 3 && array.shape(1) != 6))
     throw UsageError("points are an array of shape (n, 6), or (n, 3)");
@@ -203,7 +204,7 @@ std::unique_ptr<MeasureResult> measure_scene(ScriptScene& s, const Points& array
   return result;
 }
 
-// A view of one number of every row.
+// Returns a view of one member of every row.
 template <class T>
 py::array column(const py::object& self, const T Measurement::*member) {
   const auto& values = self.cast<const MeasureResult&>().values;

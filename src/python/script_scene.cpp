@@ -118,7 +118,7 @@ std::shared_ptr<const PreparedScene> ScriptScene::prepared() {
 
 namespace {
 
-// Whether the work has ended, for the one that waits for it.
+// Lets a thread wait until the work has ended.
 class Ending {
  public:
   void announce() {

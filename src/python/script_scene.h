@@ -1,5 +1,6 @@
-// A scene as a script holds it: what may be changed between renderings, and what is built from it
-// when it is next needed.
+// A scene as a script holds it: it can be changed between renderings, and is prepared again when
+// needed.
+// The Python bindings use it. Units are those of Scene.
 #pragma once
 
 #include <memory>
@@ -15,46 +16,47 @@
 
 namespace troffer {
 
-// Not for use from several threads at once.
+// Not thread-safe.
 class ScriptScene {
  public:
-  // Errors: import_scene's.
+  // Throws the errors of import_scene().
   ScriptScene(const std::string& file, const ImportOptions& options);
 
   const Scene& scene() const { return scene_; }
-  // For changes; what was built before is built anew.
+  // Returns the scene for changes. The prepared scene is discarded.
   Scene& change();
 
-  // Names of lights, each once, in the order of the file.
+  // Returns the names of lights, each once, in the order of the file.
   std::vector<std::string> light_names() const;
-  // Numbers of the lights of that name; UsageError where there is none.
+  // Returns the indices of the lights of that name. Throws UsageError if there is none.
   std::vector<size_t> lights_named(const std::string& name) const;
-  // What they send, over what the file says (or what set_radiance said last): at least 0, finite.
+  // Factor on the light of the file, or on the radiance of the last set_radiance(): finite, at
+  // least 0.
   double dimmer(const std::string& name) const;
   void set_dimmer(const std::string& name, double dimmer);
-  // As Light::radiance, undimmed.
+  // Radiance as in Light::radiance, without the dimmer.
   Rgb radiance(const std::string& name) const;
   void set_radiance(const std::string& name, Rgb radiance);
 
-  // Number of the material of that name; UsageError where there is none, or several.
+  // Returns the index of the material of that name. Throws UsageError if there is none, or several.
   size_t material_named(const std::string& name) const;
 
-  // Adds a sky; to a scene whose up is `up`, as `north_deg` says (make_compass).
+  // Adds a sky to a scene with the given up direction; `north_deg` as in make_compass().
   void add_sky(const SkyRequest& request, Vec3 up, double north_deg);
-  // Light as the program's options bring it: troffer::add_daylight, with its errors, after which
-  // the scene is as it was. Lights keep their dimmers by name.
+  // Adds light by the program's options, with the errors of troffer::add_daylight(). If it throws,
+  // the scene is unchanged. Lights keep their dimmers by name.
   void add_light(const DaylightOptions& options);
 
-  // The camera of that name, or the first one for ""; where the scene has none, one that frames it.
-  // UsageError where none has this name.
+  // Returns the camera of that name, or for "" the first one, or one that frames a scene without
+  // cameras. Throws UsageError for an unknown name.
   Camera camera(const std::string& name);
 
-  // What rays meet; built where something has changed since the last call.
+  // Returns the prepared scene. It is built again if anything has changed since the last call.
   std::shared_ptr<const PreparedScene> prepared();
 
  private:
   struct Dimmed {
-    Rgb radiance;  // whole
+    Rgb radiance;  // undimmed
     double dimmer = 1;
   };
   void apply_dimmers();
@@ -64,9 +66,9 @@ class ScriptScene {
   std::shared_ptr<const PreparedScene> prepared_;
 };
 
-// Runs work(stop) on a thread of its own while this one calls look() twenty times a second, and
-// once more at the end. What look() throws sets `stop` and is thrown once the work has ended; else
-// what the work throws. The work must look at the flag.
+// Runs work(stop) on another thread while this one calls look() twenty times a second, and once
+// more at the end. If look() throws, `stop` is set and the exception is rethrown after the work has
+// ended. Otherwise the work's exception is rethrown. The work must check the flag.
 void run_watched(const std::function<void(const StopFlag& stop)>& work,
                  const std::function<void()>& look);
 

@@ -1,5 +1,5 @@
 // Radiosity preprocessing of a prepared scene: compute, save, load. The façade of radiosity/, used
-// by the command radiosity and by the preparation of kj92. References: docs/radiosity.md.
+// by the command radiosity and by the preparation of kj92. References: docs/method/radiosity.md.
 #pragma once
 
 #include <cstdint>

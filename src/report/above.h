@@ -1,4 +1,6 @@
-// Finds the objects above points of a scene, by rays straight up.
+// Finds what lies above points of a scene, by rays straight up.
+// The search for floors and desks uses it to tell open places from covered ones. Points are in the
+// file's coordinates, lengths in metres.
 #pragma once
 
 #include <vector>
@@ -7,15 +9,17 @@
 
 namespace troffer {
 
-// A ray from a point in the file's coordinates, clear of the surface it lies on. direction: unit.
+// Returns a ray from `point` (in the file's coordinates) that starts clear of the surface the point
+// lies on. direction: unit length.
 Ray ray_from(const PreparedScene& scene, const Vec3d& point, const Vec3d& direction);
 
+// The nearest surface above a point.
 struct Above {
-  double height = 0;       // of the first surface over the point, m; infinite: there is none
-  bool is_within = false;  // it shows its back: the point lies within a body
+  double height = 0;       // distance to that surface, m; infinite if there is none
+  bool is_within = false;  // true if the surface shows its back: the point lies inside a body
 };
 
-// One per point (in the file's coordinates).
+// Returns one result per point. points: in the file's coordinates; up: unit length.
 std::vector<Above> above(const PreparedScene& scene, const std::vector<Vec3d>& points,
                          const Vec3d& up);
 

@@ -20,7 +20,7 @@ Figure figure_of(const Measurement& m) {
   return {m.illuminance_lx, m.standard_error};
 }
 
-// Points that are measured together, and where each part of the list begins.
+// Points that are measured together.
 struct PointList {
   std::vector<MeasuringPoint> points;
   void add(const Vec3d& position, const Vec3d& normal) {
@@ -28,7 +28,7 @@ struct PointList {
   }
 };
 
-// Steps of the whole work, of which each tells its own share.
+// Divides the progress of an assessment into steps of equal share.
 class Steps {
  public:
   Steps(size_t count, const ProgressCallback& progress) : count_(count), progress_(progress) {}
@@ -44,7 +44,7 @@ class Steps {
   const ProgressCallback& progress_;
 };
 
-// What all steps share.
+// State that all steps of an assessment share.
 struct Work {
   const AssessmentOptions& options;
   const StopFlag& stop;
@@ -53,7 +53,7 @@ struct Work {
   std::vector<PlacedObserver> observers = {};
 };
 
-// Empty where a stop came before the end.
+// Returns the illuminance at each point of the list; empty if the measurement was stopped.
 std::vector<Figure> figures_at(const PreparedScene& scene, const PointList& list,
                                const MeasureOptions& options, Work& work) {
   if (list.points.empty()) return {};
@@ -69,7 +69,7 @@ void add_grids(const Assessment& a, PointList& list) {
     for (const GridPoint& p : s.grid.points) list.add(p.position, s.surface.normal());
 }
 
-// Of the list that add_grids() began, the surfaces' own, times a factor.
+// Copies the figures of the points that add_grids() added, times a factor, to the surfaces.
 void take_grids(const std::vector<Figure>& figures, double factor, Assessment& a,
                 std::vector<Figure> SurfaceResult::*member) {
   size_t at = 0;
@@ -78,7 +78,8 @@ void take_grids(const std::vector<Figure>& figures, double factor, Assessment& a
       (s.*member).push_back(scaled(figures[at++], factor));
 }
 
-// Directions of planes around a place; those of the next place lie between them.
+// Normals of the vertical planes at a place. Each place turns them by a golden-ratio step, so that
+// places do not share directions.
 std::vector<Vec3d> directions_around(const Vec3d& up, size_t place) {
   const Framed frame(up);
   constexpr double golden = 0.6180339887498949;
@@ -113,14 +114,15 @@ size_t take_cylinders(const std::vector<Figure>& figures, size_t at, const Work&
   return at;
 }
 
-// Samples of a luminaire that is seen: in proportion to those of points, so that more of these
-// decide about glare, too.
+// Number of samples per luminaire that an observer sees. It grows with the samples per point, so
+// that more of them decide about glare, too.
 int glare_samples(int spp) {
   constexpr int least = 256, most = 1 << 16;
   return std::clamp(spp / 4, least, most);
 }
 
-// all, direct: vertical illuminance at observers' eyes, initial.
+// Computes the glare of every observer. all, direct: vertical illuminance at the observers' eyes,
+// without the maintenance factor.
 void take_glares(const PreparedScene& scene, const std::vector<Figure>& all,
                  const std::vector<Figure>& direct, const Work& work, Assessment& a) {
   for (size_t i = 0; i < work.observers.size(); ++i) {
@@ -164,7 +166,8 @@ bool measure_grids(const PreparedScene& scene, double factor, Work& work, Assess
   return true;
 }
 
-// Each group of luminaires alone. Where there is one, it is all.
+// Measures each group of luminaires alone. With a single luminaire, its light is the whole electric
+// light.
 bool measure_groups(const Scene& scene, Work& work, Assessment& a) {
   const size_t luminaires = size_t(std::count_if(
       a.groups.begin(), a.groups.end(), [](const ReportedLights& g) { return !g.is_daylight; }));
@@ -188,10 +191,10 @@ bool measure_groups(const Scene& scene, Work& work, Assessment& a) {
   return true;
 }
 
-// Points under what stands on a level surface say nothing of its light.
+// Removes points that lie under or inside an object: they say nothing about the surface's light.
 void drop_covered(const PreparedScene& scene, const Vec3d& up, SurfaceResult& s,
                   std::vector<std::string>& notes) {
-  constexpr double level = 0.9397;  // floors slope by up to 20 degrees
+  constexpr double level = 0.9397;  // cosine of 20 degrees, the steepest floor
   if (dot(s.surface.normal(), up) < level) return;
   std::vector<Vec3d> points;
   for (const GridPoint& p : s.grid.points) points.push_back(p.position);
@@ -276,11 +279,11 @@ bool wants_factor(const PreparedScene& scene, const AssessmentOptions& o, const 
   return sees_beyond(scene, points, o.up);
 }
 
-// All that is measured, in the order of its use; false where a stop came.
+// Measures all quantities, in the order of their use. Returns false if the work was stopped.
 bool measure_all(const PreparedScene& whole, Work& work, Assessment& a) {
   const Scene& scene = whole.scene;
   const auto [daylight, luminaires] = daylight_and_luminaires(scene);
-  // A scene that has light of one kind alone is that already.
+  // A scene that has only one kind of light needs no copy.
   std::unique_ptr<const PreparedScene> part;
   const auto lit_by = [&](const std::vector<std::string>& names, bool is_all) {
     part = is_all ? nullptr : std::make_unique<const PreparedScene>(with_only_lights(scene, names));
@@ -299,7 +302,8 @@ bool measure_all(const PreparedScene& whole, Work& work, Assessment& a) {
   return measure_grids(overcast, 100 / overcast_lx, work, a, &SurfaceResult::factor);
 }
 
-// up: floor area is that of the plan, of sloping floors too.
+// Sums power, floor area and mean task illuminance. Sloping floors count by their area in plan,
+// perpendicular to `up`.
 PowerResult power_of(const Assessment& a, const Vec3d& up) {
   PowerResult p;
   p.watts = 0;

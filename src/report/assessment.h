@@ -1,4 +1,7 @@
-// The light of a scene as a report states it: measured on grids, at eyes, by luminaires.
+// Measures the light of a scene for a report: illuminance on grids, cylindrical illuminance and
+// glare at eyes, luminaires and their power, and checks against requirements.
+// `report` calls assess(); the tables, plots and data files of this folder show its result.
+// Illuminance is in lx, lengths in m.
 #pragma once
 
 #include <functional>
@@ -17,53 +20,58 @@
 
 namespace troffer {
 
+// Settings of assess().
 struct AssessmentOptions {
   MeasureOptions measure;
   std::vector<Profile> profiles = standard_profiles();
-  std::string profile = "office-writing";  // of desks, work planes and what names none
-  std::vector<SurfaceRequest> surfaces;    // empty: found by themselves
-  std::vector<Observer> observers;         // empty: found by themselves
+  std::string profile = "office-writing";  // profile id of desks, work planes and surfaces that
+                                           // name none
+  std::vector<SurfaceRequest> surfaces;    // surfaces to assess; empty: find_surfaces()
+  std::vector<Observer> observers;         // observers for glare; empty: observers_of()
   std::vector<PowerRequest> power;
   Vec3d up{0, 0, 1};                            // unit
   Vec3d north{0, 1, 0};                         // unit, level
-  std::map<std::string, std::string> products;  // of photometric files: what they say of themselves
-  double maintenance = 0.8;                     // factor on electric light, but in UGR
-  double work_plane = 0.75;                     // m above floors, where there are no desks
+  std::map<std::string, std::string> products;  // description of a product by its photometric file
+  double maintenance = 0.8;                     // factor on electric light; not applied to UGR
+  double work_plane = 0.75;                     // height above floors where there are no desks, m
   bool has_cylindrical = true, has_contributions = true;
-  // The scene by an overcast sky of 10 000 lx alone; empty: no daylight factors. Asked for where
-  // openings show the sky, or is_factor_forced.
+  // Returns the scene lit by an overcast sky of 10 000 lx alone. Empty: no daylight factors. Called
+  // only if openings show the sky, or if is_factor_forced.
   std::function<Scene()> overcast;
   bool is_factor_forced = false;
-  std::vector<std::string> notes;  // on the files that said so, for people
+  std::vector<std::string> notes;  // remarks by the input files, for people
 };
 
-// The illuminance of a horizontal plane in the open, by which daylight factors count, lx.
+// Horizontal illuminance in the open that daylight factors refer to, lx.
 constexpr double overcast_lx = 10'000;
 
+// Measured light of one surface.
 struct SurfaceResult {
   AssessedSurface surface;
   SurfaceGrid grid;
-  // Per point; empty: there is no such light. Maintained electric light, and daylight, lx; the
-  // share of an overcast sky's light, %.
+  // Values per point; empty if there is no such light. electric: maintained, lx; daylight: lx;
+  // factor: daylight factor under an overcast sky, %.
   std::vector<Figure> electric, daylight, factor;
-  std::vector<Figure> by_group;  // of the mean, lx maintained; per group, empty: not asked for
+  std::vector<Figure> by_group;  // mean maintained illuminance by light group, lx; empty if not
+                                 // asked for
 };
 
-// Cylindrical illuminance at a place: the mean over vertical planes all around, Ez [EN 12464-1,
-// 4.6.2], and beside it that of the horizontal plane, Eh, both maintained, lx.
+// Cylindrical illuminance Ez at a place: the mean over vertical planes all around [EN 12464-1,
+// 4.6.2]. Eh is the illuminance of the horizontal plane there. Both are maintained, in lx.
 struct CylinderResult {
-  size_t floor = 0;  // of Assessment::floors
+  size_t floor = 0;  // index into Assessment::floors
   Vec3d position;    // in the file's coordinates, m
   Figure cylindrical, horizontal;
 };
 
 struct GlareResult {
-  size_t surface = 0;  // of Assessment::surfaces, that the observer belongs to; no_surface: none
+  size_t surface = 0;  // index into Assessment::surfaces; no_surface if the observer belongs to
+                       // none
   Glare glare;
 };
 constexpr size_t no_surface = size_t(-1);
 
-// One requirement against what was found. open: within two standard errors of it.
+// Result of one requirement. open: the value lies within two standard errors of the requirement.
 enum class Verdict : uint8_t { pass, fail, open };
 struct Check {
   std::string subject;   // a surface's name
@@ -71,19 +79,22 @@ struct Check {
   std::string quantity;  // "Ēm", "U0", "UGR", "Ēz"
   std::string unit;
   double required = 0;
-  bool is_most = false;  // the value must not be more
+  bool is_most = false;  // true if `required` is an upper limit
   Figure value;
   Verdict verdict = Verdict::open;
 };
+// Returns the verdict on a value. is_most: `required` is an upper limit.
 Verdict verdict_of(const Figure& value, double required, bool is_most);
 
+// Luminous flux and electric power of a scene's luminaires.
 struct PowerResult {
   double lumens = 0;
-  std::optional<double> watts;  // none: of a luminaire it is not known
+  std::optional<double> watts;  // empty if the power of some luminaire is unknown
   double floor_area = 0;        // m²
-  Figure task_mean;             // lx, of desks, work planes and what was named, by area
+  Figure task_mean;             // area-weighted mean illuminance of all surfaces but floors, lx
 };
 
+// Result of assess().
 struct Assessment {
   std::vector<SurfaceResult> surfaces;
   std::vector<AssessedSurface> floors;
@@ -95,17 +106,18 @@ struct Assessment {
   PowerResult power;
   bool has_electric = false, has_daylight = false, has_factor = false;
   std::vector<std::string> notes;  // for people
-  bool is_complete = true;         // false: stopped; nothing of it is to be used
+  bool is_complete = true;         // false if stopped: no part of the result may be used then
 };
 
-// The light that requirements count for: electric where there is any, else daylight.
+// Returns the light that requirements apply to: electric light if there is any, else daylight.
 const std::vector<Figure>& assessed_light(const SurfaceResult& surface);
 
-// Planes around the vertical by which cylindrical illuminance is a mean. Odd: a small source far
-// off has its share within 2 / (4 n² - 1) then, .6 %.
+// Number of vertical planes that approximate cylindrical illuminance. For odd n, the share of a
+// small distant source is accurate to 2 / (4 n² - 1), which is 0.6 % for 9.
 constexpr int cylinder_planes = 9;
 
-// UsageError for names, profiles or powers that do not exist, and for more than 100 000 points.
+// Measures a scene. Throws UsageError for names, profiles or powers that do not exist, and for more
+// than 100 000 points. progress gets the done share from 0 to 1; `stop` ends the work early.
 Assessment assess(const Scene& scene, const AssessmentOptions& options,
                   const ProgressCallback& progress, const StopFlag& stop);
 

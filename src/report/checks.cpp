@@ -15,7 +15,7 @@ Check check(const std::string& subject, const Profile& p, const char* quantity, 
   return c;
 }
 
-// task: the profile whose UGR limit holds around it.
+// task: the profile whose UGR limit applies to surroundings of tasks; null if there is none.
 void check_surface(const Assessment& a, size_t i, const Profile& p, const Profile* task,
                    std::vector<Check>& out) {
   const SurfaceResult& s = a.surfaces[i];
@@ -56,7 +56,8 @@ Verdict verdict_of(const Figure& value, double required, bool is_most) {
 std::optional<double> samples_to_decide(const Check& c, double samples) {
   if (c.verdict != Verdict::open) return std::nullopt;
   const double reserve = std::abs(c.required - c.value.value);
-  constexpr double most = 1e9;  // more than anyone waits for: the value is the requirement
+  constexpr double most = 1e9;  // limit on samples per point; beyond it the value practically
+                                // equals the requirement
   const double factor = 2 * c.value.error / std::max(reserve, 1e-300);
   return samples * factor * factor < most ? std::optional(samples * factor * factor) : std::nullopt;
 }

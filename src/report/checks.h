@@ -1,4 +1,6 @@
-// Requirements against what was measured.
+// Compares the measured light of a scene with the requirements of its profiles.
+// assess() fills Assessment::checks with it; report pages name the worst observer and the samples
+// that would decide an open check.
 #pragma once
 
 #include <optional>
@@ -9,19 +11,20 @@
 
 namespace troffer {
 
-// All that the surfaces' profiles ask for, in the order of surfaces, with the UGR limit of
-// `profile` on floors and other surroundings of tasks; then what `profile` asks of observers that
-// belong to no surface, and above floors of cylindrical illuminance. Nothing where there is no
-// light that counts.
+// Returns all checks: what the profiles of the surfaces require, in the order of surfaces, then
+// what `profile` requires of observers without a surface and of cylindrical illuminance above
+// floors. Floors and other surroundings of tasks get the UGR limit of `profile`. Quantities without
+// light yield no check.
 std::vector<Check> checks_of(const Assessment& assessment, const std::vector<Profile>& profiles,
                              const std::string& profile);
 
-// How many samples per point would decide an open check, about, where `samples` were taken: errors
-// fall with the root of the number. None where it is decided, or more than 1e9 are needed.
+// Returns about how many samples per point would decide an open check that was made with `samples`;
+// errors fall with the root of the number. Empty if the check is decided, or if more than 1e9 are
+// needed.
 std::optional<double> samples_to_decide(const Check& check, double samples);
 
-// The worst of the observers of a surface (no_surface: of those that belong to none); null where
-// none has a rating.
+// Returns the highest UGR among the observers of a surface (no_surface: those that belong to none).
+// Null if none has a rating.
 const Glare* worst_glare(const Assessment& assessment, size_t surface);
 
 }  // namespace troffer

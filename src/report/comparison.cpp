@@ -19,7 +19,7 @@ std::string cell_of(const std::optional<Figure>& f) {
   return f ? figure_cell(*f) : "–";
 }
 
-// This less the other, in bold type where it is more than two standard errors.
+// Formats own minus other; bold if it exceeds two standard errors.
 std::string difference(const std::optional<Figure>& other, const std::optional<Figure>& own) {
   if (!other || !own) return "–";
   const Figure d{own->value - other->value, std::hypot(own->error, other->error)};
@@ -42,7 +42,7 @@ std::string verdict_of(const OtherReport& other, const std::string& subject) {
   return worst;
 }
 
-// This report's own figures in the form of the other's, so that both are treated alike.
+// Converts this report's figures to the form of the other report, so that both are treated alike.
 OtherReport own_of(const Report& r) {
   const Assessment& a = r.assessment;
   OtherReport own;
@@ -124,7 +124,7 @@ std::string power_rows(const OtherReport& other, const OtherReport& own) {
   return "<div class=\"keep\">" + t.html() + "</div>";
 }
 
-// Requirements that the two reports do not share: their verdicts do not compare then.
+// Lists the requirements that differ between the two reports. Verdicts on them cannot be compared.
 std::string differing_requirements(const OtherReport& other, const OtherReport& own) {
   std::string list;
   for (const OtherCheck& b : own.checks)

@@ -19,8 +19,8 @@ void erase_covered(const PreparedScene& scene, const Vec3d& up, std::vector<T>& 
   std::erase_if(items, [&](const T&) { return is_covered[i++] != 0; });
 }
 
-// A place on the surface: the one that is wanted, or the grid point nearest to it. Rooms in the
-// shape of an L have no floor at the middle of some sides.
+// Returns the wanted place if it lies on the surface, else the nearest grid point. L-shaped rooms
+// have no floor at the middle of some sides.
 Vec3d place_near(const AssessedSurface& s, const SurfaceGrid& grid, const Vec2d& wanted) {
   const Vec3d place = s.place(wanted);
   if (lies_on(s, wanted)) return place;
@@ -62,7 +62,7 @@ std::vector<EyePlace> eye_places(const PreparedScene& scene,
       all.push_back({f, p.position + up * height});
     erase_covered(scene, up, all, [](const EyePlace& p) { return p.position; });
     const size_t n = std::min(all.size(), most);
-    // Evenly over the list, whose rows lie side by side: by middles of as long parts.
+    // Rows lie side by side in the list: the middles of n equal parts spread over the floor.
     for (size_t i = 0; i < n; ++i) places.push_back(all[(2 * i + 1) * all.size() / (2 * n)]);
   }
   return places;
@@ -71,7 +71,7 @@ std::vector<EyePlace> eye_places(const PreparedScene& scene,
 std::vector<PlacedObserver> observers_of(const PreparedScene& scene,
                                          const std::vector<AssessedSurface>& surfaces,
                                          const Vec3d& up, const std::vector<double>& eye_heights) {
-  constexpr double level = 0.9397;  // floors slope by up to 20 degrees
+  constexpr double level = 0.9397;  // cosine of 20 degrees, the steepest floor
   std::vector<PlacedObserver> observers;
   for (size_t i = 0; i < surfaces.size(); ++i) {
     const AssessedSurface& s = surfaces[i];

@@ -11,7 +11,7 @@ namespace troffer {
 
 namespace {
 
-// Nodes of the scale, evenly spaced; lightness (CIE L*) rises from 15 to 93.
+// Nodes of the colour scale, evenly spaced; lightness (CIE L*) rises from 15 to 93.
 constexpr std::array<std::array<double, 3>, 7> nodes{{{38, 20, 84},
                                                       {52, 70, 140},
                                                       {36, 117, 142},
@@ -25,7 +25,7 @@ double relative_luminance(const Rgb8& c) {
   return 0.2126 * linear(c[0]) + 0.7152 * linear(c[1]) + 0.0722 * linear(c[2]);
 }
 
-// 1, 2 or 5 of a power of ten, at least (or at most) v.
+// Rounds v up (or down) to 1, 2 or 5 times a power of ten.
 double round_to(double v, bool is_up) {
   const double power = std::pow(10.0, std::floor(std::log10(v) + 1e-9));
   const double part = v / power;
@@ -66,7 +66,7 @@ std::vector<double> round_values(double least, double largest, size_t most, bool
   if (!(largest > least && least > 0 && std::isfinite(largest)) || most == 0) return {};
   if (is_by_factors) {
     std::vector<double> values = by_factors(least, largest);
-    while (values.size() > most) {  // every second one, to the powers of ten at last
+    while (values.size() > most) {  // keep every second value; in the end only powers of ten remain
       std::vector<double> fewer;
       for (size_t i = 0; i < values.size(); i += 2) fewer.push_back(values[i]);
       values = fewer;

@@ -15,15 +15,15 @@ namespace troffer {
 
 namespace {
 
-constexpr double one_height = 2e-3;  // m: faces that differ by less are one slab
+constexpr double one_height = 2e-3;  // m; faces whose heights differ by less are one slab
 constexpr double least_level = 0.99985, least_slope = 0.9397;  // cosines of 1 and 20 degrees
-// Shares of level rays that meet something: in a room, and where half of the view is open.
+// Shares of level rays that hit something: within a room, and where half of the view is open.
 constexpr double surely_enclosed = 0.9, least_enclosed = 0.6;
 
-// Unit normals of sloping faces with at least a floor's area, the largest first.
+// Returns the unit normals of sloping faces with at least a floor's area, by falling area.
 std::vector<Vec3d> slopes(const Scene& scene, const Vec3d& up) {
   constexpr size_t most = 8;
-  constexpr double step = 5e-3;  // of a normal's coordinates: .3 degrees
+  constexpr double step = 5e-3;  // rounding of a normal's coordinates: .3 degrees
   std::map<std::array<int64_t, 3>, Vec3d> areas;
   for_each_mesh(scene, [&](uint32_t, const MeshInWorld& mesh) {
     for (size_t i = 0; i < mesh.size(); ++i) {
@@ -45,7 +45,7 @@ std::vector<Vec3d> slopes(const Scene& scene, const Vec3d& up) {
   return normals;
 }
 
-// Rooms on all faces that look in the direction n, plane by plane.
+// Adds the rooms on all faces with the normal n, plane by plane.
 void add_rooms(const PreparedScene& scene, const Vec3d& n, const Vec3d& up,
                std::vector<Room>& rooms) {
   std::vector<FlatFace> faces = flat_faces(scene.scene, n, nullptr);
@@ -110,7 +110,7 @@ std::vector<AssessedSurface> find_floors(const PreparedScene& scene, const Vec3d
   std::stable_sort(rooms.begin(), rooms.end(), [&](const Room& a, const Room& b) {
     return dot(a.floor.corner, up) < dot(b.floor.corner, up);
   });
-  constexpr double storey = 1.5;  // m: what is higher is another one
+  constexpr double storey = 1.5;  // m; a surface that is higher above a floor is another storey
   std::vector<AssessedSurface> floors;
   for (Room& r : rooms) {
     if (has_roof && r.around.roofed < 0.5) continue;

@@ -20,9 +20,10 @@ namespace troffer {
 namespace {
 
 constexpr size_t most_surfaces = 64;
-constexpr double least_desk = 0.25, least_side = 0.35;                  // m², m
-constexpr double desk_room = 0.5;                                       // m
-constexpr double desk_low = 0.6, desk_high = 0.95, tallest_desk = 1.4;  // m over the floor
+constexpr double least_desk = 0.25, least_side = 0.35;  // m², m
+constexpr double desk_room = 0.5;                       // m
+// heights above the floor, m
+constexpr double desk_low = 0.6, desk_high = 0.95, tallest_desk = 1.4;
 
 std::vector<Vec3d> grid_places(const AssessedSurface& s) {
   std::vector<Vec3d> places;
@@ -32,7 +33,7 @@ std::vector<Vec3d> grid_places(const AssessedSurface& s) {
   return places;
 }
 
-// The share of a surface's places with so much room above.
+// Returns the share of a surface's places that have at least `height` metres of free space above.
 double clear_share(const PreparedScene& scene, const AssessedSurface& s, const Vec3d& up,
                    double height) {
   double clear = 0;
@@ -72,7 +73,8 @@ std::vector<AssessedSurface> find_desks(const PreparedScene& scene,
   return desks;
 }
 
-// Floors come last, and the room's own glare is judged from them: desks are left out first.
+// Limits the number of surfaces. Desks are dropped first: floors come last in the list, and the
+// glare of the room is judged from them.
 void keep_most(FoundSurfaces& found) {
   if (found.surfaces.size() <= most_surfaces) return;
   const auto is_desk = [](const AssessedSurface& s) {
@@ -126,7 +128,7 @@ void add_node(const PreparedScene& scene, const Vec3d& up, const SurfaceRequest&
   }
   if (faces.empty())
     throw UsageError("--surface: '" + r.node + "' is not flat and has no face that looks upward");
-  // A slab is assessed within its rooms, where it is a floor.
+  // A slab that is a floor is assessed within the walls of its rooms.
   std::vector<AssessedSurface> surfaces = floors_of_node(floors, faces);
   if (surfaces.empty())
     for (const FlatFace& f : faces) {
@@ -189,7 +191,7 @@ FoundSurfaces asked_surfaces(const PreparedScene& scene, const Vec3d& up,
 
 std::vector<uint8_t> covered_points(const PreparedScene& scene, const std::vector<Vec3d>& points,
                                     const Vec3d& up) {
-  constexpr double touching = 0.03;  // m: no photometer fits under it
+  constexpr double touching = 0.03;  // m; no photometer fits below that
   const std::vector<Above> found = above(scene, points, up);
   std::vector<uint8_t> is_covered;
   for (const Above& a : found) is_covered.push_back(a.is_within || a.height < touching);
@@ -204,7 +206,7 @@ void lift_onto_rugs(const PreparedScene& scene, const Vec3d& up, std::vector<Gri
   std::vector<Vec3d> tops;
   std::vector<size_t> which;
   for (size_t i = 0; i < rays.size(); ++i) {
-    constexpr double least = 1e-3;  // m: the surface itself
+    constexpr double least = 1e-3;  // m; a nearer hit is the surface itself
     if (!hits[i].is_valid() || !(double(hits[i].t) < rug - least)) continue;
     const Surface s = surface_at(scene.scene, rays[i], hits[i]);
     if (!(dot(Vec3d(s.geometric_normal), up) > 0.99)) continue;

@@ -13,7 +13,7 @@ namespace troffer {
 
 namespace {
 
-constexpr double least_cosine = 0.99985;  // of one degree
+constexpr double least_cosine = 0.99985;  // cosine of one degree
 
 using Corners = std::array<Vec3d, 3>;
 
@@ -22,14 +22,14 @@ Corners corners_in_file(const Scene& scene, const MeshInWorld& mesh, size_t i) {
   return {Vec3d(c[0]) + scene.origin, Vec3d(c[1]) + scene.origin, Vec3d(c[2]) + scene.origin};
 }
 
-// Twice the area, along the normal of the front.
+// Twice the area of a triangle, along its front normal.
 Vec3d area_of(const Corners& c) {
   return cross(c[1] - c[0], c[2] - c[0]);
 }
 
 struct Found {
   std::vector<Corners> triangles;
-  std::vector<uint32_t> mesh;  // a number of its name, per triangle
+  std::vector<uint32_t> mesh;  // number of the mesh's name, per triangle
   std::vector<std::string> names;
 };
 
@@ -73,9 +73,9 @@ std::vector<FlatFace> flat_faces(const Scene& scene, const Vec3d& towards,
                                  const std::string* node) {
   const Found found = triangles_towards(scene, towards, node);
   DisjointSets sets = joined(found.triangles);
-  std::map<uint32_t, uint32_t> number;  // of a set's face
+  std::map<uint32_t, uint32_t> number;  // index of the face of a set
   std::vector<FlatFace> faces;
-  std::vector<std::map<uint32_t, double>> parts;  // area by mesh
+  std::vector<std::map<uint32_t, double>> parts;  // area by mesh, per face
   for (uint32_t i = 0; i < found.triangles.size(); ++i) {
     const auto [at, is_new] = number.emplace(sets.find(i), uint32_t(faces.size()));
     if (is_new) {

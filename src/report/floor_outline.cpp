@@ -12,7 +12,6 @@
 
 namespace troffer {
 
-// Places spread over triangles by area, the same each time.
 std::vector<Vec3d> places_on(const std::vector<const FlatFace*>& faces, size_t count) {
   std::vector<double> sums;
   std::vector<const std::array<Vec3d, 3>*> all;
@@ -40,7 +39,7 @@ std::vector<Vec3d> places_on(const std::vector<const FlatFace*>& faces, size_t c
   return places;
 }
 
-// Each edge of one triangle alone, in its direction; faces that lie on each other keep theirs.
+// Opposite edges cancel in pairs. Coincident faces count separately, so their outlines remain.
 std::vector<PlaneSegment> outline_of(const std::vector<const FlatFace*>& faces,
                                      const FloorPlane& plane) {
   using Key = std::array<int64_t, 2>;
@@ -74,7 +73,7 @@ bool is_within(const PlaneCell& c, const Vec2d& p) {
 
 namespace {
 
-// Places spread over cells by area.
+// Returns random places, spread over the cells by area.
 std::vector<Vec3d> places_in(const FloorPlane& plane, const std::vector<const PlaneCell*>& cells,
                              size_t count) {
   double sum = 0, whole = 0;

@@ -1,4 +1,5 @@
-// Outline, sample places and surroundings of floors.
+// Computes the outline, sample places and surroundings of floors.
+// The search for rooms (rooms.h) uses them. Coordinates are the file's, lengths in metres.
 #pragma once
 
 #include <vector>
@@ -9,25 +10,27 @@
 
 namespace troffer {
 
-constexpr double headroom = 1.9;  // m over at least half of a floor's open part
-constexpr double rug = 0.05;      // m: what lies flat on a floor belongs to it
+constexpr double headroom = 1.9;  // m; free height that at least half of a floor needs
+constexpr double rug = 0.05;      // m; flat objects up to that height belong to the floor
 
-// Places spread over faces by area, the same each time.
+// Returns `count` places, spread over the faces by area. The same input yields the same places.
 std::vector<Vec3d> places_on(const std::vector<const FlatFace*>& faces, size_t count);
 
-// Edges of one triangle alone, with the face on their left; faces that lie on each other keep
-// theirs.
+// Returns the edges that belong to one triangle alone, with the face on their left. Coincident
+// faces keep their own edges.
 std::vector<PlaneSegment> outline_of(const std::vector<const FlatFace*>& faces,
                                      const FloorPlane& plane);
 
+// True if p lies in the cell or on its border.
 bool is_within(const PlaneCell& cell, const Vec2d& p);
 
-// Objects around and above a part of a floor.
+// Surroundings of a part of a floor.
 struct FloorSurroundings {
-  double clear = 0;     // share of its places that have headroom
-  double roofed = 0;    // … that have it under a ceiling
-  double enclosed = 0;  // share of level rays at eye height that meet something
+  double clear = 0;     // share of places with headroom
+  double roofed = 0;    // share of places with headroom under a ceiling
+  double enclosed = 0;  // share of level rays at eye height that hit something
 };
+// Casts rays from places on the cells to find their surroundings.
 FloorSurroundings look_around(const PreparedScene& scene, const FloorPlane& plane,
                               const std::vector<const PlaneCell*>& cells);
 

@@ -17,27 +17,28 @@ namespace {
 
 constexpr double least_area = 0.005;         // m² [2]
 constexpr double most_solid_angle = 0.1;     // sr [1]
-constexpr double highest = 1.9, widest = 3;  // of CIE 117's table
+constexpr double highest = 1.9, widest = 3;  // limits of CIE 117's table: height, sideways distance
 constexpr size_t replicates = 4;
 
-// Guth's, at and above the line of sight: angles in degrees from the vertical and from the line of
-// sight [3].
+// Guth's position index at and above the line of sight [3]. tau: angle from the vertical; sigma:
+// angle from the line of sight; both in degrees.
 double index_above(double tau, double sigma) {
   const double a = 35.2 - 0.31889 * tau - 1.22 * std::exp(-2 * tau / 9);
   const double b = 21 + 0.26667 * tau - 0.002963 * tau * tau;
   return std::exp(a * 1e-3 * sigma + b * 1e-5 * sigma * sigma);
 }
 
-double index_below(double off_axis) {  // how far beside the axis, of the way ahead [4]
+double index_below(double off_axis) {  // Position index below the line of sight [4]. off_axis:
+                                       // distance from the axis over the distance ahead.
   return 1 + (off_axis < 0.6 ? 0.8 : 1.2) * off_axis;
 }
 
-// Sums over what is seen of a luminaire, or of a part of it that hangs together.
+// Sums over the visible part of a luminaire, or of one connected part of it.
 struct Sums {
   double solid_angle = 0, illuminance = 0;  // ∫dω, ∫L dω
   double area = 0;                          // ∫r² dω, m²
-  double point_strength = 0;                // Σ I² / (least_area r²), of points
-  Vec3d direction;                          // ∫ω dω, or to the point
+  double point_strength = 0;                // Σ I² / (least_area r²) of point lights
+  Vec3d direction;                          // ∫ω dω, or the direction of the point
   Sums& operator+=(const Sums& o) {
     solid_angle += o.solid_angle;
     illuminance += o.illuminance;
@@ -47,7 +48,7 @@ struct Sums {
     return *this;
   }
   double luminance() const { return solid_angle > 0 ? illuminance / solid_angle : 0; }
-  // L² ω, or as if its area were the least.
+  // L² ω; a luminaire below the least area counts as if it had that area.
   double strength() const {
     return point_strength + sqr(luminance()) * solid_angle * std::min(1.0, area / least_area);
   }
@@ -65,7 +66,7 @@ class Eye {
     offset_ = 4 * ray_offset(std::max(1.0f, std::max(reach.x, std::max(reach.y, reach.z))));
   }
 
-  // Adds what `side` × `side` samples see of a piece.
+  // Adds `side` × `side` samples of a piece. Samples that are hidden or behind the eye add nothing.
   void look(const LightPrimitive& p, int side, Random& random, Sums& sums) const {
     const int n = p.shape == PrimitiveShape::point ? 1 : side * side;
     for (int i = 0; i < n; ++i) {
@@ -84,7 +85,7 @@ class Eye {
   void add(const LightSample& s, double open, double weight, Sums& sums) const {
     const double light = double(luminance(s.radiance)) * lm_per_unit_ * open;
     const double r2 = sqr(double(s.distance));
-    if (s.is_delta) {  // of irradiance I / r²
+    if (s.is_delta) {  // irradiance is I / r²
       sums.point_strength += light * light * r2 / least_area;
       sums.direction += Vec3d(s.wi);
       return;
@@ -95,7 +96,8 @@ class Eye {
     sums.area += w * r2;
     sums.direction += Vec3d(s.wi) * w;
   }
-  // What of a sample's light arrives: 0 where something hides it, less than 1 behind glass.
+  // Returns the share of a sample's light that arrives: 0 if something hides it, less than 1
+  // behind glass.
   double open_share(const LightSample& s) const {
     Ray ray;
     ray.origin = place_;
@@ -114,13 +116,14 @@ class Eye {
   float offset_ = 0;
 };
 
-// Samples along a side of each piece, for a replicate's share of all samples.
+// Samples along each side of a piece, so that the pieces of a replicate share its samples.
 int samples_of(size_t pieces, int samples) {
   const double each = double(samples) / double(replicates);
   return std::max(1, int(std::sqrt(each / double(std::max<size_t>(pieces, 1)))));
 }
 
-// False where nothing of it is seen, or it does not count.
+// Fills in `l`. Returns false if nothing of the luminaire is visible, or if its position does not
+// count.
 bool see(const PreparedScene& scene, const Eye& eye, const LightPieces& pieces, int side,
          uint64_t seed, SeenLuminaire& l) {
   std::array<Sums, replicates> sums;

@@ -12,13 +12,13 @@ double largest_cell(double d) {
 
 GridShape grid_shape(double width, double height) {
   const double longer = std::max(width, height), shorter = std::min(width, height);
-  // 10 m are ten cells, and 1.6 m are twice .8, whatever rounding to float makes of them.
+  // Tolerance for rounding to float: 10 m yield ten cells, and 1.6 m is twice .8 m.
   constexpr double slack = 1e-4;
   const bool is_long = longer >= (2 - slack) * shorter;
   const double d = is_long ? shorter : longer, other = is_long ? longer : shorter;
   const double cells = std::max(1.0, std::ceil(d / largest_cell(d) - slack));
   const double others = std::max(1.0, std::ceil(other / (d / cells) - slack));
-  // Whoever has surfaces of many kilometres is told by the number of points.
+  // A limit that keeps the numbers within int; the caller reports grids with too many points.
   constexpr double most = 1e6;
   const int along = int(cells), across = int(std::min(others, most));
   const bool is_width = (width >= height) != is_long;  // d is the width

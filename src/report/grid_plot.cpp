@@ -17,10 +17,10 @@ namespace {
 
 constexpr double left = 34, top = 8, right = 8, bottom = 32;  // margins, px
 constexpr double value_size = 9.5, label_size = 10.5;         // px: 7 and 8 points on paper
-constexpr double digit = 0.56;  // width of a digit, of the text's size
+constexpr double digit = 0.56;  // width of a digit, relative to the text size
 
 struct Frame2 {
-  double scale = 1, width = 0, height = 0;  // px per metre; of the surface, px
+  double scale = 1, width = 0, height = 0;  // px per metre; size of the surface, px
   double x(double m) const { return left + m * scale; }
   double y(double m) const { return top + height - m * scale; }
 };
@@ -34,7 +34,7 @@ Frame2 frame_of(const AssessedSurface& s, double width) {
   return f;
 }
 
-// The digits that tell a mark from its neighbours.
+// Formats a value with enough digits to differ from neighbouring marks.
 std::string mark_text(double v) {
   return std::abs(v) >= 1000 ? fmt::format("{:.0f}", v) : fmt::format("{:.3g}", v);
 }
@@ -53,7 +53,7 @@ bool is_free(const Box2& box, const std::vector<Box2>& taken) {
   return std::none_of(taken.begin(), taken.end(), [&](const Box2& t) { return t.meets(box); });
 }
 
-// Isolux levels: round values well within the range of a plot.
+// Isolux levels: round values inside the range of a plot.
 std::vector<double> levels_of(double least, double largest) {
   constexpr size_t most = 6;
   if (!(largest > least)) return {};
@@ -69,7 +69,7 @@ class Plot {
       : surface_(s), grid_(g), values_(values), scale_(scale), frame_(frame_of(s, width)) {}
 
   std::string svg(const std::string& unit) {
-    const std::string lines = isolux();  // labels take their places before values do
+    const std::string lines = isolux();  // labels take their places first; values fill the rest
     return svg_element(left + frame_.width + right, top + frame_.height + bottom,
                        surface_.name + ", " + unit, cells() + lines + numbers() + axes());
   }
@@ -117,7 +117,8 @@ class Plot {
            fmt::format("<g font-size=\"{}\" font-weight=\"bold\">", label_size) + labels + "</g>";
   }
 
-  // A label in a white box, on the line's point nearest to its middle that has room for it.
+  // Places a label in a white box, at the point of the line that has room for it and is nearest to
+  // the line's middle.
   std::string label(const Line& line, const std::string& text) {
     if (line.size() < 3) return {};
     const double half = 0.5 * digit * label_size * double(text.size()) + 3;
@@ -139,7 +140,7 @@ class Plot {
     return {};
   }
 
-  // Values at as many points as have room for them.
+  // Prints the values of a regular subset of points, as dense as the text allows.
   std::string numbers() const {
     size_t letters = 1;
     for (const Figure& f : values_) letters = std::max(letters, number(f.value).size());
@@ -165,7 +166,7 @@ class Plot {
     return std::abs(v) >= 20 ? fmt::format("{:.0f}", v) : short_number(v);
   }
 
-  // Round numbers of metres, as many as have room.
+  // Round values in metres for an axis, at most `most` and 0.
   static std::vector<double> ticks(double size) {
     constexpr size_t most = 8;
     std::vector<double> t{0};
@@ -199,10 +200,10 @@ class Plot {
   const std::vector<Figure>& values_;
   const PlotScale& scale_;
   Frame2 frame_;
-  std::vector<Box2> taken_;  // by labels
+  std::vector<Box2> taken_;  // boxes of labels
 };
 
-// A level bar with marks under it.
+// Draws a bar of the colour scale with marks under it.
 template <class Share>
 std::string bar(double width, const std::vector<double>& marks, const Share& share,
                 const std::string& unit) {

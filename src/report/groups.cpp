@@ -15,7 +15,7 @@ namespace troffer {
 
 namespace {
 
-// "panel.003", "panel 3" and "panel3" are panels.
+// Strips a number at the end: "panel.003", "panel 3" and "panel3" become "panel".
 std::string family_of(const std::string& name) {
   const size_t end = name.find_last_not_of("0123456789");
   if (end == std::string::npos || end + 1 == name.size()) return name;

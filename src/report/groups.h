@@ -1,4 +1,5 @@
-// A scene's lights as a designer counts them: luminaires, and what comes from beyond the scene.
+// Groups a scene's lights as a designer counts them: luminaires, and daylight.
+// assess() measures each group; tables of the report list them. Flux is in lm, power in W.
 #pragma once
 
 #include <cstdint>
@@ -11,35 +12,37 @@
 
 namespace troffer {
 
+// A group of lights.
 struct ReportedLights {
   std::string name;
-  std::vector<std::string> lights;  // names, as Light::name
+  std::vector<std::string> lights;  // light names, as in Light::name
   size_t luminaires = 0;
   bool is_daylight = false;
-  double lumens = 0;            // initial; 0 for daylight
-  std::optional<double> watts;  // of all its luminaires; none: unknown
+  double lumens = 0;            // initial flux, lm; 0 for daylight
+  std::optional<double> watts;  // power of all its luminaires, W; empty if unknown
 };
 
-// "NODE=W", per luminaire; '*' in a name stands for any letters (base/wildcard.h).
+// Electric power per luminaire, from "NODE=W"; '*' in a name stands for any letters
+// (base/wildcard.h).
 struct PowerRequest {
   std::string name;
   double watts = 0;
 };
 
-// Skies, suns, images of the surroundings and distant lights.
+// True for skies, suns, environment images and distant lights.
 bool is_daylight(const Light& light);
 
-// One group per name, in natural order of names; luminaires whose names differ in a number at their
-// end alone are together where there are more than `most` groups, and the weakest of those left
-// beyond that are "others". watts: as asked for; of several requests that fit, the last. UsageError
-// for one that fits no light.
+// Returns one group per name, in natural order of names. If there are more than `most` groups,
+// luminaires whose names differ only in a number at the end are joined. The weakest groups beyond
+// `most` then become "others". watts: the last request that fits. Throws UsageError for a request
+// that fits no light.
 std::vector<ReportedLights> light_groups(const Scene& scene, const std::vector<PowerRequest>& power,
                                          size_t most);
 
-// The scene, such that no name stands for a luminaire and for daylight both.
+// Renames daylight so that no name belongs to both a luminaire and daylight.
 Scene with_daylight_apart(Scene scene);
 
-// Those of the scene's light names that are daylight, and the others; each once.
+// Returns the names of daylight and the names of luminaires, each name once.
 std::pair<std::vector<std::string>, std::vector<std::string>> daylight_and_luminaires(
     const Scene& scene);
 

@@ -11,7 +11,8 @@ namespace {
 
 constexpr const char* replacement = "\xef\xbf\xbd";
 
-// Length of the UTF-8 sequence at the text's beginning, and its code point; 0 where there is none.
+// Decodes the UTF-8 sequence at the beginning of the text. Returns its length, or 0 if it is
+// invalid.
 size_t decode(std::string_view t, uint32_t& code) {
   const auto byte = [&](size_t i) { return uint32_t(static_cast<unsigned char>(t[i])); };
   const uint32_t first = byte(0);
@@ -132,7 +133,7 @@ std::string short_number(double v) {
 std::string with_error(double value, double error) {
   if (!(error > 0)) return short_number(value);
   const auto power = [](double v) { return int(std::floor(std::log10(v))); };
-  // Four digits of the value are enough, where these still show the error.
+  // Four digits of the value suffice if they still show the error.
   const int by_error = 1 - power(error);
   const int by_value = 3 - power(std::max(std::abs(value), error));
   const int digits = std::clamp(std::min(by_error, std::max(by_value, by_error - 1)), 0, 4);

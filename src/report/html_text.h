@@ -1,4 +1,6 @@
-// Text and bytes within HTML, SVG and CSV.
+// Formats text, numbers and bytes for HTML, SVG and CSV.
+// Pages, plots and tables of reports use it. Names in scenes may contain any bytes; these functions
+// make them safe to embed.
 #pragma once
 
 #include <cstdint>
@@ -8,25 +10,25 @@
 
 namespace troffer {
 
-// As it may stand in HTML's text and in attributes in quotes: & < > " ' are entities, control
-// characters (C0 but tab and line feed, DEL, C1) and what is no UTF-8 become U+FFFD, as does what
-// turns the direction of text (U+202A–U+202E, U+2066–U+2069).
+// Returns the text for HTML content and quoted attributes. & < > " ' become entities. Control
+// characters (C0 except tab and line feed, DEL, C1), invalid UTF-8, and characters that change the
+// direction of text (U+202A–U+202E, U+2066–U+2069) become U+FFFD.
 std::string html_text(std::string_view text);
 
-// A name or a path for a table: html_text() with places where lines may break behind / \ _ - . :
-// and within pieces of more than 32 bytes without any.
+// Returns a name or path for a table: html_text() that may break lines after / \ _ - . : and within
+// runs of more than 32 bytes.
 std::string html_name(std::string_view text);
 
-// A CSV field (RFC 4180), always in quotes; a text that spreadsheets would take for a formula
+// Returns a CSV field (RFC 4180), always in quotes. Text that spreadsheets would take for a formula
 // begins with an apostrophe.
 std::string csv_field(std::string_view text);
 
 std::string base64(std::span<const uint8_t> bytes);  // RFC 4648
 
-// "412", "41.2", "0.412": as many digits as a table wants of a value, by its size.
+// Formats a number for a table by its size: "412", "41.2", "0.412".
 std::string short_number(double v);
-// "512.3 ± 3.2": rounded to where the error has its second digit, or its first where four digits of
-// the value are there by then; at most 4 digits behind the point.
+// Formats a value with its error: "512.3 ± 3.2". It rounds to the second digit of the error, or to
+// the first one if the value then shows four digits. At most 4 decimals.
 std::string with_error(double value, double error);
 
 }  // namespace troffer

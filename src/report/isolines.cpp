@@ -10,7 +10,8 @@ namespace troffer {
 
 namespace {
 
-// A side between two neighbours: the first one's place, and whether it goes up or right.
+// A side between two neighbouring cells: the first cell, and true if the second is above it (else
+// to its right).
 struct Side {
   int column, row;
   bool is_up;
@@ -26,8 +27,8 @@ Vec2d crossing(const ValueGrid& g, const Side& s, double level) {
 
 using Segment = std::pair<Side, Side>;
 
-// The square whose lower left corner is that cell. Two lines go through a saddle: how they join is
-// decided by the value in its middle.
+// Adds the segments within one square; (c, r) is its lower left corner. In a saddle two segments
+// cross the square, and the value in its middle decides how they connect.
 void add_square(const ValueGrid& g, int c, int r, double level, std::vector<Segment>& out) {
   const std::array<double, 4> v{g.at(c, r), g.at(c + 1, r), g.at(c + 1, r + 1), g.at(c, r + 1)};
   if (!std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); })) return;
@@ -53,7 +54,7 @@ class Joiner {
       at_[segments[i].second].push_back(i);
     }
   }
-  // Lines with ends begin at one.
+  // Joins segments to lines. Open lines start at one of their ends.
   std::vector<std::vector<Side>> lines() {
     std::vector<std::vector<Side>> out;
     for (const bool is_open : {true, false})

@@ -1,4 +1,5 @@
-// Lines of equal value through a grid of values.
+// Computes lines of equal value on a grid of values, by marching squares.
+// Grid plots use it. Coordinates are in cells.
 #pragma once
 
 #include <array>
@@ -8,7 +9,7 @@
 
 namespace troffer {
 
-// Values at the middles of a grid's cells, by rows from row 0; NaN where there is none.
+// Values at the middles of a grid's cells, row by row from row 0; NaN if missing.
 struct ValueGrid {
   int columns = 0, rows = 0;
   std::vector<double> values;
@@ -19,9 +20,9 @@ struct ValueGrid {
 
 using Line = std::vector<Vec2d>;
 
-// Lines at which the value, bilinear between the middles of cells along the sides of their squares,
-// is `level`: (column, row) in cells, the middle of cell (0,0) being (0.5, 0.5). Squares with a
-// missing corner have none. Closed lines end where they begin.
+// Returns the lines at which the value is `level`, linearly interpolated along the sides of the
+// squares between middles of cells. Points are (column, row) in cells; the middle of cell (0,0) is
+// (0.5, 0.5). Squares with a missing corner contain no lines. Closed lines end where they begin.
 std::vector<Line> isolines(const ValueGrid& grid, double level);
 
 }  // namespace troffer

@@ -47,7 +47,7 @@ double spot_share(const Light& e, double cosine) {
 double intensity_of(const Scene& scene, const LightPrimitive& p, const Vec3d& w) {
   const Light& e = scene.lights[p.light];
   const double lm = scene.is_photometric ? 1 : luminous_efficacy;
-  if (e.web >= 0) return 0;  // counted once for the whole opening
+  if (e.web >= 0) return 0;  // added once for the whole opening, by web_intensity()
   if (!p.has_surface())
     return lm * double(luminance(e.radiance)) *
            (e.kind == LightKind::spot ? spot_share(e, dot(Vec3d(e.direction), w)) : 1);
@@ -79,7 +79,7 @@ PolarCurve curve_of(const PreparedScene& scene, const LightPieces& pieces,
   return c;
 }
 
-// Where a luminaire aims: its nadir, its beam or its mean normal; zero where it has none.
+// Direction in which a luminaire aims: its nadir, its beam or its mean normal; zero if it has none.
 Vec3d aim_of(const PreparedScene& scene, const LightPieces& pieces) {
   const Light& e = scene.scene.lights[scene.primitives[pieces[0]].light];
   if (e.web >= 0) return Vec3d(e.axes[2]);

@@ -1,4 +1,6 @@
-// Luminaires of a scene: what shines under one name and hangs together.
+// Finds the luminaires of a scene: connected parts of lights of one name.
+// Glare, the luminaire list and polar plots of reports use it. Positions are in the file's
+// coordinates, intensities in cd.
 #pragma once
 
 #include <array>
@@ -12,31 +14,33 @@
 
 namespace troffer {
 
-using LightPieces = std::vector<uint32_t>;  // numbers of light primitives
+using LightPieces = std::vector<uint32_t>;  // indices of light primitives
 
-// Per name, its luminaires: lamps of one name may hang far from each other, and faces of one lamp,
-// which share corners (to a tenth of a millimetre), are one. Daylight is left out.
+// Returns the luminaires of each name. Lamps of one name that lie apart are separate luminaires.
+// Faces that share corners (to a tenth of a millimetre) belong to one luminaire. Daylight is left
+// out.
 std::map<std::string, std::vector<LightPieces>> luminaire_parts(const PreparedScene& scene);
 
-// Intensities in the planes C0 to C180 and C90 to C270, cd, every 5 degrees from -180 to 180;
-// 0 is the aim.
+// Intensities in the planes C0-C180 and C90-C270, cd, every 5 degrees from -180 to 180; 0 is the
+// direction of the aim.
 struct PolarCurve {
   static constexpr int steps = 73;
   std::array<std::array<double, steps>, 2> candela{};
   double largest() const;
 };
 
+// A luminaire with its position and photometry.
 struct PlacedLuminaire {
   std::string name;
-  std::string product;          // of its photometric file, or what kind of light it is
+  std::string product;          // product by its photometric file, or the kind of light
   Vec3d position;               // middle, in the file's coordinates, m
-  Vec3d aim;                    // unit; zero: it shines all around
-  double lumens = 0;            // initial
-  std::optional<double> watts;  // none: unknown
+  Vec3d aim;                    // unit; zero: no main direction
+  double lumens = 0;            // initial flux, lm
+  std::optional<double> watts;  // power, W; empty if unknown
   PolarCurve curve;
 };
 
-// All luminaires, in natural order of names. products: by photometric file, what it says of itself.
+// Returns all luminaires, in natural order of names. products: description by photometric file.
 std::vector<PlacedLuminaire> placed_luminaires(const PreparedScene& scene,
                                                const std::vector<PowerRequest>& power,
                                                const std::map<std::string, std::string>& products);

@@ -22,7 +22,7 @@ std::string with_unit(const std::string& text, const std::string& unit) {
   return unit.empty() ? text : text + " " + html_text(unit);
 }
 
-// "+x", or three numbers.
+// Formats a direction: "+x" along an axis, else three numbers.
 std::string direction_cell(const Vec3d& d) {
   constexpr double along = 0.9999;
   for (size_t k = 0; k < 3; ++k)
@@ -36,7 +36,7 @@ const Check* find_check(const Assessment& a, const std::string& subject, const c
   return nullptr;
 }
 
-// A value in the colour of its verdict, and what is required.
+// Formats a value in the colour of its verdict, with the requirement.
 std::string checked_cell(const Check* c, const Figure& value, const char* unit) {
   const std::string text = with_unit(figure_cell(value), unit);
   if (c == nullptr) return text;

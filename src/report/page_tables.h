@@ -1,4 +1,4 @@
-// The tables of a report's page, as HTML.
+// Makes the tables of a report's page as HTML. report_page() puts them together.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace troffer {
 
-// A table: a head and rows of cells that are HTML already. style: CSS classes.
+// Builds a table from a head and rows; cells are HTML. style: CSS classes.
 class HtmlTable {
  public:
   explicit HtmlTable(const std::vector<std::string>& head, const std::string& style = {});
@@ -19,14 +19,15 @@ class HtmlTable {
 };
 
 std::string figure_cell(const Figure& f);  // "412 ± 3"
-const char* verdict_mark(Verdict v);       // a word in its colour
+const char* verdict_mark(Verdict v);       // coloured word for a verdict
 
-// One row per surface: maintained mean, uniformity, glare, verdict; further requirements below.
+// One row per surface: maintained mean, uniformity, glare, verdict. Requirements without a surface
+// follow.
 std::string summary_matrix(const Report& r);
-// The open requirements, and how many samples would decide them; empty if none is open.
+// Lists the undecided requirements and the samples that would decide them; empty if there are none.
 std::string undecided_list(const Report& r);
 std::string figures_table(const SurfaceResult& s);
-// Surfaces against luminaires: the mean by each alone.
+// Mean illuminance of each surface by each group of luminaires alone.
 std::string contributions_table(const Assessment& a);
 std::string glare_table(const Assessment& a);
 std::string cylinder_table(const Assessment& a);

@@ -13,9 +13,10 @@ namespace troffer {
 
 namespace {
 
-constexpr double margin = 16, foot = 30, compass = 62;  // px: around; scale bar; north at the right
+constexpr double margin = 16, foot = 30, compass = 62;  // px: margin; height of the scale bar;
+                                                        // width of the north arrow
 constexpr double name_size = 10.5, number_size = 10;    // px
-constexpr double letter_width = 0.56;                   // width of a letter, of the text's size
+constexpr double letter_width = 0.56;  // width of a letter, relative to the text size
 
 class Plan {
  public:
@@ -102,7 +103,8 @@ class Plan {
            fmt::format("<g font-size=\"{}\" fill=\"#1b1f24\">", name_size) + text + "</g>";
   }
 
-  // A surface's name at its lower edge, clear of luminaires over its middle; cut to what has room.
+  // Places a surface's name at its lower edge, clear of luminaires over its middle, and cuts it to
+  // fit.
   std::string label(const AssessedSurface& s, bool is_floor) const {
     double x0 = width_, x1 = 0, y1 = 0;
     for (const Vec2d& c :
@@ -117,7 +119,7 @@ class Plan {
                     is_floor ? "fill=\"#56606b\" font-style=\"italic\"" : "");
   }
 
-  // Cut at a whole UTF-8 sequence.
+  // Cuts a name at a complete UTF-8 sequence.
   static std::string shortened(const std::string& name, size_t letters) {
     if (name.size() <= letters) return name;
     size_t n = letters - 1;
@@ -134,7 +136,7 @@ class Plan {
       const std::string number = std::to_string(l + 1);
       const double r = 4 + 0.5 * letter_width * number_size * double(number.size());
       const Vec2d way = axes_.of(e.aim);
-      // What aims aside has an arrow as long as its aim is level.
+      // The arrow is as long as the horizontal part of the aim.
       if (std::hypot(way.x, way.y) > 0.05)
         out += fmt::format("<path d=\"M{:.1f},{:.1f}l{:.1f},{:.1f}\" stroke-width=\"2\"/>", p.x,
                            p.y, way.x * 34, -way.y * 34);
@@ -164,7 +166,7 @@ class Plan {
            "</g>";
   }
 
-  // A round number of metres, about a fifth of the width.
+  // Draws a scale bar of a round number of metres, about a fifth of the width.
   std::string bar() const {
     const double wanted = 0.2 * (upper_.x - lower_.x);
     const double power = std::pow(10.0, std::floor(std::log10(std::max(wanted, 0.1))));

@@ -1,4 +1,5 @@
-// A scene seen from straight above, as plans show it.
+// Describes a scene as seen from straight above: axes, north, and reading order of a plan.
+// Plans use it, and the searches for floors and desks that number names.
 #pragma once
 
 #include <string_view>
@@ -8,24 +9,23 @@
 
 namespace troffer {
 
-// Directions of a plan: to the right and to its top; unit. The right is the world's x as far as the
-// vertical allows.
+// Axes of a plan, unit length: to the right and to the top. The right is the world's x, projected
+// onto the level plane (y if the vertical is along x).
 struct PlanAxes {
   Vec3d right, top;
   Vec2d of(const Vec3d& p) const { return {dot(p, right), dot(p, top)}; }
 };
 PlanAxes plan_axes(const Vec3d& up);
 
-// North on a plan: `north_deg` clockwise from -z, or from +y where z is up, as --north counts; the
-// other way round where the world is mirrored.
+// Returns the direction of north: `north_deg` clockwise from -z, or from +y if z is up, as --north
+// counts. Counterclockwise if the world is mirrored.
 Vec3d north_of(const Vec3d& up, double north_deg, bool is_mirrored);
 
-// Order in which a plan is read: row by row from its top, each from the left. A row ends where the
-// next surface lies more than half a metre lower.
+// Sorts surfaces in the order in which a plan is read: rows from the top, each from the left. A new
+// row starts where the next surface lies more than half a metre lower.
 void sort_by_rows(std::vector<AssessedSurface*>& surfaces, const Vec3d& up);
 
-// Whether a name comes before another: digits in it count as numbers, so that "desk 2" comes before
-// "desk 10".
+// True if name a comes before b. Digits compare as numbers, so "desk 2" comes before "desk 10".
 bool natural_less(std::string_view a, std::string_view b);
 
 }  // namespace troffer

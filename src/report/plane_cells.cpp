@@ -9,9 +9,11 @@ namespace troffer {
 
 namespace {
 
-constexpr double angle = 0.2718;      // rad: no wall is likely to stand at it
+constexpr double angle = 0.2718;      // rad; rotation of the plane: walls hardly ever stand at that
+                                      // angle
 constexpr double least_step = 1e-6;   // m, between heights of slabs
-constexpr double least_width = 1e-4;  // m, of a cell: coordinates are floats of some metres
+constexpr double least_width = 1e-4;  // m; least width of a cell: coordinates are floats of some
+                                      // metres
 
 Vec2d turned(const Vec2d& p, double by) {
   const double c = std::cos(by), s = std::sin(by);
@@ -20,8 +22,8 @@ Vec2d turned(const Vec2d& p, double by) {
 
 struct SlabLine {
   Vec2d low, high;  // low.y < high.y
-  int turn = 0;     // change of cover from its left to its right
-  int body = 0;     // change of solid, so too
+  int turn = 0;     // change of cover from left to right
+  int body = 0;     // change of solid from left to right
   uint8_t kind = 0;
   size_t number = 0;
   double x_at(double y) const {
@@ -36,7 +38,7 @@ std::vector<SlabLine> lines_of(const std::vector<PlaneSegment>& segments) {
     if (!(std::abs(a.y - b.y) > least_step)) continue;
     const bool is_up = a.y < b.y;
     const bool is_rim = (segments[i].kind & segment_outline) != 0;
-    // The face lies on the left of its rim: a rim that rises ends it.
+    // The face lies to the left of its outline, so an outline that rises ends it.
     const int end = is_up ? -1 : 1;
     lines.push_back({is_up ? a : b, is_up ? b : a, is_rim ? end : 0, segments[i].is_solid ? end : 0,
                      segments[i].kind, i});
@@ -44,7 +46,7 @@ std::vector<SlabLine> lines_of(const std::vector<PlaneSegment>& segments) {
   return lines;
 }
 
-// Heights of all ends and crossings, ascending.
+// Heights of all end points and crossings, ascending.
 std::vector<double> heights_of(const std::vector<SlabLine>& lines) {
   std::vector<double> heights;
   std::vector<size_t> order(lines.size());
@@ -69,11 +71,11 @@ std::vector<double> heights_of(const std::vector<SlabLine>& lines) {
   return apart;
 }
 
-// A cell while slabs are added to it.
+// A cell that may continue in the next slab.
 struct Growing {
-  size_t left, right;  // numbers of lines
+  size_t left, right;  // indices of lines
   size_t cell;
-  double bottom_left, bottom_right, top_left, top_right;  // x at the slab's ends
+  double bottom_left, bottom_right, top_left, top_right;  // x at the ends of the slab
 };
 
 class Builder {
@@ -113,7 +115,7 @@ class Builder {
     c.middle = (p[0] + p[1] + p[2] + p[3]) * 0.25;
   }
 
-  // The cell below where it goes on between the same lines, else a new one.
+  // Returns the cell of the slab below if it continues between the same lines, else a new cell.
   size_t cell_of(double y0, double y1, const Growing& g) {
     const auto below = cell_below_.find({g.left, g.right});
     if (below != cell_below_.end() && out_.cells[below->second].cover == cover_ &&
@@ -140,7 +142,7 @@ class Builder {
     std::vector<Growing> slab;
     size_t last = no_plane_cell;
     for (size_t i = 0; i < sorted.size();) {
-      // All segments that lie on each other here.
+      // Take all segments that coincide here as one border.
       uint8_t kinds = 0;
       const size_t first = i;
       for (; i < sorted.size() && sorted[i].first <= sorted[first].first + least_width; ++i) {
@@ -172,7 +174,8 @@ class Builder {
     for (const Growing& g : below_) cell_below_.emplace(std::pair{g.left, g.right}, g.cell);
   }
 
-  // Cells of the slab below meet those of this one without a segment between them.
+  // Adds contacts between cells of this slab and cells of the slab below it, which no segment
+  // separates.
   void add_vertical(const std::vector<Growing>& slab, double y) {
     size_t k = 0;
     for (const Growing& g : slab) {
@@ -188,8 +191,8 @@ class Builder {
 
   std::vector<SlabLine> lines_;
   std::vector<Growing> below_;                              // cells of the slab below
-  std::map<std::pair<size_t, size_t>, size_t> cell_below_;  // by its lines
-  int cover_ = 0, solid_ = 0;                               // of the cell at hand
+  std::map<std::pair<size_t, size_t>, size_t> cell_below_;  // key: the lines at its left and right
+  int cover_ = 0, solid_ = 0;                               // of the current cell
   PlaneCells out_;
 };
 

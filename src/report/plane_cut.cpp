@@ -14,7 +14,8 @@ namespace troffer {
 
 namespace {
 
-// Ends of the segment where a triangle crosses the plane; false where it does not.
+// Computes the segment in which a triangle crosses the plane. Returns false if it does not. d:
+// signed distances of the corners.
 bool cross(const std::array<Vec3d, 3>& p, const std::array<double, 3>& d,
            std::array<Vec3d, 2>& end) {
   size_t n = 0;
@@ -31,7 +32,7 @@ uint64_t key_of(const Vec2d& p) {
   return hash_of(uint64_t(std::llround(p.x * 1e4)), uint64_t(std::llround(p.y * 1e4)));
 }
 
-// A segment of a mesh's outline, the mesh's back on its left.
+// A segment of a mesh's cross-section, with the mesh's back on its left.
 struct Cut {
   PlaneSegment segment;
   uint32_t mesh = 0;
@@ -39,7 +40,7 @@ struct Cut {
 
 struct Outline {
   PlaneBounds bounds;
-  double area = 0;  // of a closed one, m²: above 0 where the inside is on its left
+  double area = 0;  // area of a closed outline, m²; > 0 if the inside is on its left
   bool is_closed = true, is_capped = true;
   double width() const {
     return std::hypot(bounds.upper.x - bounds.lower.x, bounds.upper.y - bounds.lower.y);
@@ -48,14 +49,14 @@ struct Outline {
 
 class Outlines {
  public:
-  // is_capped: per mesh, whether it has faces that look up over the plane.
+  // is_capped: per mesh, true if it has upward faces above the plane.
   Outlines(std::vector<Cut> cuts, const std::vector<uint8_t>& is_capped)
       : cuts_(std::move(cuts)), sets_(cuts_.size()) {
     std::unordered_map<uint64_t, uint32_t> first;
     std::unordered_map<uint64_t, int> ends;
     for (uint32_t i = 0; i < cuts_.size(); ++i)
       for (const Vec2d& p : {cuts_[i].segment.a, cuts_[i].segment.b}) {
-        // Meshes that touch have outlines of their own.
+        // Meshes that touch keep separate outlines.
         const uint64_t key = hash_of(key_of(p), cuts_[i].mesh);
         ends[key] += p == cuts_[i].segment.a ? 1 : -1;
         const auto [at, is_new] = first.emplace(key, i);
@@ -74,7 +75,8 @@ class Outlines {
     }
   }
 
-  // Those that reach farther than `least`; those of bodies are marked as solid, holes included.
+  // Returns the segments of outlines that are at least `least` wide. Outlines of bodies, holes
+  // included, are marked as solid.
   std::vector<PlaneSegment> segments(double least) {
     std::vector<PlaneSegment> kept;
     for (uint32_t i = 0; i < cuts_.size(); ++i) {
@@ -87,7 +89,7 @@ class Outlines {
   }
 
  private:
-  // Whether an outline's place lies within the outline of a body of the same mesh.
+  // True if an outline lies within the outline of a body of the same mesh.
   bool is_hole(uint32_t i) {
     const uint32_t set = sets_.find(i);
     const auto known = holes_.find(set);
@@ -138,7 +140,7 @@ std::vector<PlaneSegment> plane_cut(const Scene& scene, const FloorPlane& plane,
       if (std::max(a.x, b.x) < bounds.lower.x || std::min(a.x, b.x) > bounds.upper.x ||
           std::max(a.y, b.y) < bounds.lower.y || std::min(a.y, b.y) > bounds.upper.y)
         continue;
-      // The triangle's front looks to the right of the segment.
+      // The triangle's front must face the right of the segment.
       if (dot(n, plane.along) * (b.y - a.y) - dot(n, plane.across) * (b.x - a.x) < 0)
         std::swap(a, b);
       cuts.push_back({{a, b, kind}, number});

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int rings = 2;
 
-// The next of 1, 2, 4, 6, 8 times a power of ten, which two rings divide into round numbers.
+// Rounds up to 1, 2, 4, 6 or 8 times a power of ten, which two rings divide into round numbers.
 double scale_of(double largest) {
   const double power = std::pow(10.0, std::floor(std::log10(largest)));
   for (const double step : {1.0, 2.0, 4.0, 6.0, 8.0})

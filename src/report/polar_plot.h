@@ -1,4 +1,4 @@
-// A luminaire's polar curve as a drawing.
+// Draws a luminaire's polar intensity curve as SVG, for the list of luminaires of a report.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace troffer {
 
-// An SVG element `side` px wide and high: C0 to C180 solid, C90 to C270 dashed, the aim downwards,
-// over rings of equal intensity. Empty where the luminaire is dark.
+// Returns an SVG element, `side` px wide and high: C0-C180 solid, C90-C270 dashed, the aim
+// downward, over rings of equal intensity. Empty if the luminaire is dark.
 std::string polar_plot(const PolarCurve& curve, const std::string& title, double side);
 
 }  // namespace troffer

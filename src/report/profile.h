@@ -1,4 +1,5 @@
-// What light a task asks for: requirements after EN 12464-1 as a small table, and own ones.
+// Requirements on the light for a task: a small table after EN 12464-1, or the user's own.
+// assess() checks each surface against its profile.
 // Reference: [1] EN 12464-1, table of requirements for interior areas, tasks and activities.
 #pragma once
 
@@ -8,25 +9,26 @@
 
 namespace troffer {
 
+// Requirements of one kind of task.
 struct Profile {
   std::string id, name;
-  double illuminance_lx = 0;  // least maintained mean
-  double ugr_limit = 0;       // most; 0: none
-  double uniformity = 0;      // least of least over mean
-  int colour_rendering = 0;   // Ra that lamps should have: told, not tested
-  double cylindrical_lx = 0;  // least mean at eye height; 0: none
+  double illuminance_lx = 0;  // least maintained mean illuminance
+  double ugr_limit = 0;       // highest UGR; 0: no limit
+  double uniformity = 0;      // least ratio of minimum to mean
+  int colour_rendering = 0;   // least Ra of lamps: printed, not tested
+  double cylindrical_lx = 0;  // least mean cylindrical illuminance at eye height; 0: none
   double eye_height = 1.2;    // m above the floor: 1.2 seated, 1.6 standing
-  // The area around a task, in the same room: observers there have the task's UGR limit.
+  // True for surroundings of a task in the same room. Observers there have the task's UGR limit.
   bool is_around_task = false;
 };
 
-// The table that comes with the program.
+// Returns the built-in table.
 const std::vector<Profile>& standard_profiles();
 
-// The profile of that id; null where there is none. Ids are compared letter by letter.
+// Returns the profile with that id, or null. Ids are case-sensitive.
 const Profile* find_profile(const std::vector<Profile>& profiles, std::string_view id);
 
-// All ids, as a sentence lists them.
+// Returns all ids, separated by commas.
 std::string profile_ids(const std::vector<Profile>& profiles);
 
 }  // namespace troffer

@@ -17,7 +17,7 @@ Json json_of(const Figure& f) {
   return {{"value", f.value}, {"standard_error", f.error}};
 }
 
-// Metres and directions, without what rounding to float left.
+// Rounds metres and directions to six decimals, which removes float noise and negative zero.
 double tidy(double v) {
   return std::round(v * 1e6) / 1e6 + 0.0;
 }
@@ -182,7 +182,7 @@ std::string report_json(const Report& report) {
   j["luminaires"] = luminaires_json(a);
   j["power"] = power_json(a.power);
   j["notes"] = a.notes;
-  // Names may be no UTF-8.
+  // Names may be invalid UTF-8.
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -38,7 +38,7 @@ std::string head(const Report& r) {
   return h + "</p>\n";
 }
 
-// Colour rendering is a requirement on lamps, which no computation tests.
+// Colour rendering is a requirement on lamps; the program does not compute it.
 std::string colour_rendering(const Report& r) {
   int most = 0;
   for (const SurfaceResult& s : r.assessment.surfaces)
@@ -82,7 +82,7 @@ std::string plans(const Report& r) {
   return h;
 }
 
-// Without the sign of what rounds to zero.
+// Returns 0 for values that would print as 0.00 or -0.00.
 double near_zero(double v) {
   return std::abs(v) < 0.005 ? 0 : v;
 }
@@ -97,7 +97,7 @@ std::string facts_of(const AssessedSurface& s, const SurfaceGrid& g) {
                          near_zero(s.corner.y), near_zero(s.corner.z));
 }
 
-// One scale of colours for each quantity.
+// Colour scales, one for each quantity.
 struct Scales {
   PlotScale electric, daylight, factor;
 };
@@ -164,7 +164,7 @@ std::string surfaces(const Report& r) {
   return h;
 }
 
-// Luminaires that differ in nothing but their place have one type.
+// Assigns a type to each luminaire: those that differ only in their place share one.
 std::vector<size_t> types_of(const std::vector<PlacedLuminaire>& all, std::vector<size_t>& firsts) {
   const auto is_same = [](const PlacedLuminaire& a, const PlacedLuminaire& b) {
     return a.product == b.product && a.watts == b.watts &&
@@ -291,7 +291,8 @@ std::string appendix(const Report& r) {
 }  // namespace
 
 std::vector<std::string> report_plans(const Report& r) {
-  constexpr double most_height = 470;  // px: beside a summary of some ten rows on one page
+  constexpr double most_height = 470;  // px; leaves room for a summary of about ten rows on the
+                                       // same page
   std::vector<std::string> drawings;
   for (const Storey& s : storeys_of(r.assessment, r.options.up))
     drawings.push_back(plan_plot(r.assessment, s, r.options, full_width, most_height));

@@ -17,16 +17,17 @@ namespace troffer {
 
 namespace {
 
-constexpr double usual_cut = 2.3;              // m: above usual doors, below usual ceilings
-constexpr double least_cut_to_ceiling = 0.15;  // m
-constexpr double open_cut = 1.9;               // m, where there is no ceiling
-constexpr double body_cut = 0.1;               // m: above skirting boards, below seats and shelves
-constexpr double least_outline = 0.25;         // m: narrower things are legs, cords and leaves
-constexpr double tallest_furniture = 2.45;     // m: wardrobes are 2.36 m at most
-constexpr double widest_gap = 0.05;            // m, between walls that were meant to meet
-constexpr double joint = 0.01;                 // m, between boards or tiles
-constexpr double least_thickness = 0.35;  // m, twice area over perimeter: hollow walls are thinner
-constexpr double highest_podium = 0.6;    // m: tables are higher
+constexpr double usual_cut = 2.3;              // m; above usual doors, below usual ceilings
+constexpr double least_cut_to_ceiling = 0.15;  // m; least distance of the cut from the ceiling
+constexpr double open_cut = 1.9;               // m; cut where there is no ceiling
+constexpr double body_cut = 0.1;               // m; above skirting boards, below seats and shelves
+constexpr double least_outline = 0.25;         // m; narrower outlines are legs, cords and leaves
+constexpr double tallest_furniture = 2.45;     // m; wardrobes are at most 2.36 m high
+constexpr double widest_gap = 0.05;            // m; between walls that were meant to meet
+constexpr double joint = 0.01;                 // m; gap between boards or tiles
+constexpr double least_thickness = 0.35;  // m, twice the area over the perimeter: hollow walls are
+                                          // thinner
+constexpr double highest_podium = 0.6;    // m; tables are higher
 constexpr size_t most_segments = 6000;
 
 enum class CellUse : uint8_t { outside, open, furniture, wall };
@@ -73,7 +74,8 @@ class RoomFinder {
   }
 
  private:
-  // The usual height of what is over the faces; false where hardly anything has headroom.
+  // Sets the cut height from the median free height above the faces. Returns false if hardly any
+  // place has headroom.
   bool measure_headroom() {
     constexpr size_t places = 256;
     std::vector<double> heights;
@@ -97,7 +99,7 @@ class RoomFinder {
         b.lower = {std::min(b.lower.x, p.x), std::min(b.lower.y, p.y)};
         b.upper = {std::max(b.upper.x, p.x), std::max(b.upper.y, p.y)};
       }
-    // A little off round heights, at which surfaces often end.
+    // Surfaces often end at round heights: cut slightly above them.
     constexpr double odd = 1.37e-3;
     const Scene& scene = scene_.scene;
     const auto add = [&](double height, SegmentKind kind) {
@@ -135,7 +137,8 @@ class RoomFinder {
     for (size_t k = 0; k < which.size(); ++k) {
       const size_t i = which[k];
       tops_[i] = rug + found[k].height;
-      // A body on feet shows its underside: its top is not known, but it is no podium.
+      // A body on feet shows its underside, which hides its top. It is no podium, so its top counts
+      // as the highest a podium may have.
       if (!found[k].is_within && cells[i].solid > 0 && tops_[i] < wall_height_)
         tops_[i] = highest_podium;
       const bool is_body = found[k].is_within || cells[i].solid > 0;
@@ -145,7 +148,7 @@ class RoomFinder {
     }
   }
 
-  // Cells that a wall does not part.
+  // Joins cells that no wall separates.
   void join_cells() {
     sets_ = DisjointSets(cells_.cells.size());
     for (const CellContact& c : cells_.contacts)
@@ -191,14 +194,14 @@ class RoomFinder {
            set_of(c.left) != set_of(c.right);
   }
 
-  // Regions under a luminaire or within a wardrobe that reaches through the walls' cut: they have
-  // a single room around them.
+  // Joins regions under a luminaire or within a wardrobe that reaches the height of the walls' cut
+  // to the single room around them.
   void absorb_islands(const std::vector<size_t>& roots) {
     const std::vector<double> areas = areas_of_sets(), walls = areas_of(CellUse::wall),
                               bodies = areas_of(CellUse::furniture);
     const std::set<size_t> is_room(roots.begin(), roots.end());
-    std::map<size_t, std::set<size_t>>
-        around;  // of a region: rooms, or no_plane_cell for the outside
+    // By region: the adjacent rooms, or no_plane_cell for the outside.
+    std::map<size_t, std::set<size_t>> around;
     for (const CellContact& c : cells_.contacts)
       for (const auto& [one, other] : {std::pair{c.left, c.right}, std::pair{c.right, c.left}}) {
         if (!is_floor(one) || is_room.contains(set_of(one))) continue;
@@ -218,7 +221,7 @@ class RoomFinder {
     }
   }
 
-  // Whether a place in the middle of an island, a metre over the floor, sees the room around it.
+  // True if a point in the middle of an island, a metre above the floor, sees the surrounding room.
   bool sees(size_t island, size_t room) {
     const PlaneCell* largest = nullptr;
     for (size_t i = 0; i < cells_.cells.size(); ++i)
@@ -253,7 +256,8 @@ class RoomFinder {
     return at == moved_.end() ? s : at->second;
   }
 
-  // Parapets reach from the room through its glass; podiums are floors of their own.
+  // Turns furniture into wall where it is a parapet, which continues outside of the room, or a
+  // podium, which is a floor of its own.
   void exclude_shell() {
     DisjointSets bodies(cells_.cells.size());
     const auto is_body = [&](size_t k) {
@@ -309,17 +313,18 @@ class RoomFinder {
     return is_floor(cell) && uses_[cell] != CellUse::wall && room_of(cell) == root;
   }
 
-  // Stretches between the room and what is not, those of one segment that follow each other joined.
+  // Returns the borders between the room and everything else. Consecutive stretches of one segment
+  // are joined.
   std::vector<std::array<Vec3d, 2>> rim_of(size_t root) {
     struct Stretch {
       size_t segment;
       Vec2d from, to;
     };
     std::vector<Stretch> joined;
-    std::map<size_t, size_t> last;  // of a segment, its last stretch
+    std::map<size_t, size_t> last;  // last stretch of a segment
     for (const CellContact& c : cells_.contacts) {
       const bool l = is_inside(c.left, root), r = is_inside(c.right, root);
-      // Walls that reach from floor to ceiling within a room have no cells of their own.
+      // A wall face within the room that reaches from floor to ceiling encloses no cell.
       const bool is_thin_wall =
           l && r && has_wall(c) && set_of(c.left) == root && set_of(c.right) == root;
       if ((l == r && !is_thin_wall) || c.kinds == 0) continue;
@@ -336,7 +341,7 @@ class RoomFinder {
     return rim;
   }
 
-  // Name of the face that most of the room's cells lie on.
+  // Returns the name of the face with the largest share of the room's area.
   std::string name_of_room(const std::vector<size_t>& inside) {
     if (faces_.size() == 1) return faces_[0]->name;
     std::map<std::string, double> areas;
@@ -364,9 +369,9 @@ class RoomFinder {
   double cut_ = usual_cut, wall_height_ = tallest_furniture;
   PlaneCells cells_;
   std::vector<CellUse> uses_;
-  std::vector<double> tops_;  // height of the body that a cell lies in, m
+  std::vector<double> tops_;  // height of the top of the body in a cell, m
   DisjointSets sets_{0};
-  std::map<size_t, size_t> moved_;  // islands and their rooms
+  std::map<size_t, size_t> moved_;  // islands and the rooms they belong to
 };
 
 }  // namespace
@@ -377,7 +382,7 @@ std::vector<Room> rooms_on(const PreparedScene& scene, const std::vector<const F
 }
 
 bool is_furniture(double height, double area) {
-  // A step or a stage is low or large; beds and tables are neither.
+  // A step is lower than furniture, and a stage is larger than a bed.
   constexpr double step = 0.25, desk_low = 0.6, tallest_desk = 1.4, largest_bed = 6;
   if (height < step || height > tallest_desk) return false;
   return height >= desk_low || area < largest_bed;

@@ -12,7 +12,7 @@ namespace {
 
 using Words = std::array<uint32_t, 8>;
 
-// The first 32 bits of what follows the point in the cube roots of the first 64 primes [1, 4.2.2].
+// First 32 bits of the fractional parts of the cube roots of the first 64 primes [1, 4.2.2].
 constexpr std::array<uint32_t, 64> constants{
     0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
     0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
@@ -23,7 +23,7 @@ constexpr std::array<uint32_t, 64> constants{
     0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
     0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2};
 
-// [1, 6.2.2]
+// Updates the hash by one block of 64 bytes [1, 6.2.2].
 void add_block(const uint8_t* block, Words& hash) {
   std::array<uint32_t, 64> w;
   for (size_t t = 0; t < 16; ++t)

@@ -1,4 +1,4 @@
-// SHA-256, by which a report names the files that it was made from.
+// SHA-256. A report lists its input files with their hashes.
 // Reference: [1] NIST, FIPS 180-4, "Secure Hash Standard", 2015.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace troffer {
 
-// 64 hexadecimal digits.
+// Returns the hash as 64 hexadecimal digits.
 std::string sha256(std::span<const uint8_t> bytes);
 
 }  // namespace troffer

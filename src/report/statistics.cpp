@@ -10,13 +10,13 @@ namespace troffer {
 
 namespace {
 
-// A normal number by the polar angle and radius of two even ones (Box & Muller).
+// Returns a standard normal number from two uniform ones (Box & Muller).
 double next_normal(Random& random) {
   const double u = 1 - random.next_double(), v = random.next_double();
   return std::sqrt(-2 * std::log(u)) * std::cos(2 * pi * v);
 }
 
-// By the parametric bootstrap: the same bytes each time.
+// Estimates the bias of the minimum by a parametric bootstrap with a fixed seed.
 double bias_of_least(const std::vector<Figure>& values, double least) {
   constexpr int draws = 256;
   Random random(1);

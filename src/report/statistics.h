@@ -1,4 +1,5 @@
-// What a grid of measured points says: mean, least value, uniformity, each with a standard error.
+// Statistics of a grid of measured points: mean, minimum, maximum and uniformity, each with a
+// standard error. Assessments, tables and plots of reports use it.
 #pragma once
 
 #include <vector>
@@ -10,24 +11,25 @@ struct Figure {
   double value = 0, error = 0;
 };
 
+// Summary of a grid; figures have the unit of the points.
 struct GridSummary {
   Figure mean, least, most;
   Figure uniformity;  // least over mean
-  // By how much the least of noisy values lies below the least of true ones, about: what another
-  // noise as large as the told errors would take off.
+  // Estimated bias of the minimum: how much lower the minimum of noisy values is than that of exact
+  // ones. At most 0.
   double least_bias = 0;
-  bool has_values = false;  // there is a point
+  bool has_values = false;  // false if there is no point
 };
 
-// Mean of figures. Errors of points measured together may have a part in common, which no mean
-// takes away: the error told is the mean of theirs, an upper bound.
+// Returns the mean of figures. Its error is the mean of their errors, an upper bound: points that
+// are measured together may share a part of their error, which does not average out.
 Figure mean_of(const std::vector<Figure>& values);
 
-Figure ratio(const Figure& a, const Figure& b);  // as if independent; 0 where b is 0
+Figure ratio(const Figure& a, const Figure& b);  // for independent figures; 0 if b is not above 0
 inline Figure scaled(const Figure& f, double by) {
   return {f.value * by, f.error * by};
 }
-Figure sum(const Figure& a, const Figure& b);  // as if independent
+Figure sum(const Figure& a, const Figure& b);  // for independent figures
 
 GridSummary summary_of(const std::vector<Figure>& values);
 

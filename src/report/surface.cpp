@@ -38,7 +38,7 @@ bool is_off_rim(const AssessedSurface& s, const Vec2d& p) {
   });
 }
 
-// Where it is certainly on the surface: the middle of the largest triangle.
+// Returns a point that certainly lies on the surface: the middle of the largest triangle.
 Vec2d a_middle(const AssessedSurface& s) {
   Vec2d middle{s.width / 2, s.height / 2};
   double most = 0;
@@ -53,7 +53,8 @@ Vec2d a_middle(const AssessedSurface& s) {
 
 using Edge = std::pair<std::array<int64_t, 2>, std::array<int64_t, 2>>;
 
-// Edges of one triangle alone; corners are the same where they agree to a tenth of a millimetre.
+// Returns the edges that belong to one triangle alone. Corners that agree to a tenth of a
+// millimetre are the same.
 std::vector<std::array<Vec2d, 2>> rim_of(const std::vector<PlaneTriangle>& triangles) {
   const auto key = [](const Vec2d& p) {
     return std::array<int64_t, 2>{std::llround(p.x * 1e4), std::llround(p.y * 1e4)};
@@ -73,11 +74,11 @@ std::vector<std::array<Vec2d, 2>> rim_of(const std::vector<PlaneTriangle>& trian
   return rim;
 }
 
-// The direction of most of the rim's length, turned by quarters to lie nearest to the world's x
-// (where that is the normal, y).
+// Returns the direction of most of the rim's length. It is turned by quarter turns to lie nearest
+// to the world's x, or y if the normal is along x.
 Vec3d direction_of(const std::vector<std::array<Vec2d, 2>>& rim, const Vec3d& u, const Vec3d& n) {
-  constexpr double steps = 2 * pi / 0.002;              // of a turn: a tenth of a degree
-  std::map<int64_t, std::pair<double, Vec3d>> lengths;  // by direction, but for quarters
+  constexpr double steps = 2 * pi / 0.002;              // steps per turn: a tenth of a degree
+  std::map<int64_t, std::pair<double, Vec3d>> lengths;  // by direction modulo a quarter turn
   for (const auto& e : rim) {
     const Vec2d way = e[1] - e[0];
     const double l = std::sqrt(dot(way, way));

@@ -1,4 +1,5 @@
-// Flat surfaces whose light is assessed, and the points on them where it is measured.
+// Flat surfaces whose light is assessed, and the points where it is measured.
+// find_surfaces() and the measuring grids of `view` make them. Lengths are in metres.
 #pragma once
 
 #include <array>
@@ -15,33 +16,34 @@ const char* name_of(SurfaceKind kind);
 
 using PlaneTriangle = std::array<Vec2d, 3>;
 
-// Positions are in the file's coordinates, m; those within the plane count from `corner` along
-// `along` and `across`.
+// A flat surface. Positions are in the file's coordinates, m; plane coordinates are metres from
+// `corner` along `along` and `across`.
 struct AssessedSurface {
   std::string name;
-  std::string profile;  // id
+  std::string profile;  // profile id
   SurfaceKind kind = SurfaceKind::given;
-  Vec3d corner;                                 // of the bounding rectangle
+  Vec3d corner;                                 // corner of the bounding rectangle
   Vec3d along{1, 0, 0}, across{0, 1, 0};        // unit, orthogonal; across = normal × along
-  double width = 0, height = 0;                 // of the bounding rectangle, m
+  double width = 0, height = 0;                 // size of the bounding rectangle, m
   std::vector<PlaneTriangle> triangles;         // empty: the rectangle is full
-  std::vector<std::array<Vec2d, 2>> rim;        // edges that it ends at; empty: the rectangle's
+  std::vector<std::array<Vec2d, 2>> rim;        // border edges; empty: the rectangle's
   double area = 0;                              // m²
-  double border = 0;                            // m off the rim, without points
+  double border = 0;                            // width of the zone along the rim without points, m
   double spacing = 0;                           // largest side of a cell, m; 0: by grid_shape()
-  double height_of_eye = 1.2, above_floor = 0;  // m; of the surface over the floor it belongs to
+  double height_of_eye = 1.2, above_floor = 0;  // m; height of the surface above its floor
 
   Vec3d normal() const { return cross(along, across); }
   Vec3d place(const Vec2d& p) const { return corner + along * p.x + across * p.y; }
 };
 
+// A measuring point of a grid.
 struct GridPoint {
   int column = 0, row = 0;
   Vec3d position;  // in the file's coordinates
 };
 
-// Cells of the bounding rectangle without its border; those count as points whose middles lie on
-// the surface, off its rim. There is always one: the surface's middle, where there would be none.
+// Cells of the bounding rectangle without its border. A cell yields a point if its middle lies on
+// the surface and off the rim. If no cell does, the surface's middle is the only point.
 struct SurfaceGrid {
   GridShape shape;
   Vec2d first, cell;  // corner of cell (0,0), and a cell's sides, in the plane, m
@@ -50,15 +52,16 @@ struct SurfaceGrid {
 
 SurfaceGrid grid_of(const AssessedSurface& surface);
 
-// Whether a place in the plane is part of the surface.
+// True if a place in the plane is part of the surface.
 bool lies_on(const AssessedSurface& surface, const Vec2d& place);
 
-// The middle of the bounding rectangle, or of the largest triangle where that is no part of the
-// surface. In the file's coordinates.
+// Returns the middle of the bounding rectangle, or of the largest triangle if the former lies off
+// the surface. In the file's coordinates.
 Vec3d middle_of(const AssessedSurface& surface);
 
-// The surface that triangles of a plane with the unit normal n make; name, kind and profile are not
-// set. Its rim is that of the triangles, which must share corners then, or the one that is known.
+// Builds a surface from triangles in a plane with the unit normal n; name, kind and profile stay
+// unset. The rim is `known_rim` if given. Otherwise it follows from the triangles, which must then
+// share corners.
 AssessedSurface surface_of_triangles(const std::vector<std::array<Vec3d, 3>>& triangles,
                                      const Vec3d& n,
                                      const std::vector<std::array<Vec3d, 2>>& known_rim = {});

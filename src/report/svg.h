@@ -1,11 +1,11 @@
-// Pieces of SVG that all drawings of a report share.
+// Parts of SVG that all drawings of a report share. Coordinates are CSS px.
 #pragma once
 
 #include <string>
 
 namespace troffer {
 
-// An SVG element for HTML, `width` × `height` px of CSS; what is read out for it: `title`.
+// Returns an SVG element for HTML, `width` × `height` CSS px. title: text for screen readers.
 std::string svg_element(double width, double height, const std::string& title,
                         const std::string& inner);
 

@@ -15,7 +15,7 @@
 // A sphere is replaced by the disk that its outline spans, one per receiver; steps 3 and 4 are
 // skipped. Textured lights and glossy surfaces are integrated over points drawn from the masks.
 // Cells and lists depend only on geometry and on rays of earlier clusters, so the estimate is
-// unbiased. References: docs/certified.md.
+// unbiased. References: docs/method/certified.md.
 #pragma once
 
 #include <cstdint>

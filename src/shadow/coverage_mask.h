@@ -1,5 +1,5 @@
 // Coverage masks: the samples of a flat source that a receiver sees past a list of convex facets,
-// one bit each, without rays. mask_cell.h and plan_cells.h use them. docs/certified.md, "Masks",
+// one bit each, without rays. mask_cell.h and plan_cells.h use them. docs/method/certified.md, "Masks",
 // has the proofs.
 //
 // Lattice: for coprime a and b, the samples are the points (u,v) of [0,1)² whose canvas coordinates

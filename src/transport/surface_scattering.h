@@ -1,7 +1,7 @@
 // A BSDF split into a diffuse and a specular part, as in [1]. Shadow rays and the general radiosity
 // (or cells) illuminate the diffuse part; spawned viewing rays sample the specular part. Used by
 // kj92, certified light and gather rays.
-// References: [1] Kok & Jansen, Eurographics '92 (docs/kj92.md).
+// References: [1] Kok & Jansen, Eurographics '92 (docs/method/kj92.md).
 #pragma once
 
 #include "base/units.h"

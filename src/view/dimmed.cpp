@@ -38,7 +38,7 @@ Image dimmed_picture(const LayerBoard& board, const DimmerSettings& settings) {
   const auto whole = board.get("whole");
   if (!whole) throw UsageError("there is no picture yet");
   if (are_all_one(settings)) return whole->image;
-  // One luminaire alone has no layer of its own.
+  // A single luminaire has no layer of its own.
   if (settings.size() == 1) {
     Image image = whole->image;
     for (Rgb& p : image.pixels) p = p * settings[0];

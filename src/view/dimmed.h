@@ -1,4 +1,5 @@
-// Sums over dimmers: pictures and measurements by the light of each, as each is set.
+// Sums the light of dimmers: pictures and measurements by each luminaire, times its setting.
+// The page's downloads of pictures and measurements use it.
 #pragma once
 
 #include <string>
@@ -11,16 +12,17 @@
 
 namespace troffer {
 
-// "1,1,1;0.5,0.5,0.4": three factors between 0 and 1000 for each of `count` dimmers; empty: all 1.
-// UsageError for others.
+// Parses "1,1,1;0.5,0.5,0.4": three factors between 0 and 1000 for each of `count` dimmers. Empty
+// text: all factors are 1. Throws UsageError for anything else.
 DimmerSettings parse_dimmers(const std::string& text, size_t count);
 bool are_all_one(const DimmerSettings& settings);
 
-// The picture on the board: "whole", or the sum of the dimmers' layers where a dimmer is set.
-// Throws UsageError if it is not there yet.
+// Returns the picture on the board: "whole", or the sum of the dimmers' layers if any setting
+// differs from 1. Throws UsageError if a layer is missing.
 Image dimmed_picture(const LayerBoard& board, const DimmerSettings& settings);
 
-// As the measurements of an answer add up; of one by all light together as they are.
+// Returns the sums of an answer's measurements over dimmers. An answer by all light together is
+// returned as measured.
 std::vector<Measurement> dimmed_measurements(const MeasuringAnswer& answer,
                                              const DimmerSettings& settings);
 

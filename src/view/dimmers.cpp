@@ -10,10 +10,10 @@ namespace troffer {
 
 namespace {
 
-// Triangles of all copies together.
+// Limit on the triangles of all copies together.
 constexpr size_t most_triangles = 8'000'000;
 
-// Light from infinity has no power of its own, and is never the weakest.
+// Environment lights have no power of their own; they rank highest.
 double rank(const Dimmer& d) {
   return d.power > 0 && std::isfinite(d.power) ? d.power : 1e300;
 }
@@ -39,7 +39,7 @@ std::vector<Dimmer> dimmers_of(const Scene& scene, size_t most) {
   std::vector<Dimmer> kept;
   Dimmer rest;
   for (size_t i = 0; i < all.size(); ++i) {
-    // Of equals the first come first.
+    // Equal ranks keep their order of appearance.
     if (kept.size() + 1 < count && (count > 1 && ranks[i] >= sorted[count - 2])) {
       kept.push_back(std::move(all[i]));
     } else {

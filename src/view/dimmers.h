@@ -1,7 +1,8 @@
-// The luminaires of a scene that can be dimmed one by one, and the scene under any setting of them.
+// Splits a scene's light into dimmers, and prepares the scene for any setting of them.
 //
-// Light is linear: the picture under all luminaires is the sum of the pictures under each. All
-// scenes here share one tracer, because they differ only in what their lights emit.
+// Light is linear: the picture under all luminaires is the sum of the pictures under each. The
+// scenes differ only in what their lights emit, so they share one tracer. Painter and
+// MeasuringQueue render them.
 #pragma once
 
 #include <functional>
@@ -15,29 +16,31 @@
 
 namespace troffer {
 
+// One or more luminaires that are dimmed together.
 struct Dimmer {
   std::string name;
-  std::vector<std::string> lights;  // all lights of these names
-  double power = 0;                 // as SourceInfo
+  std::vector<std::string> lights;  // names of its lights; all lights of these names belong to it
+  double power = 0;                 // as in SourceInfo
 };
 
-// One factor per dimmer and channel: brightness times colour.
+// Factor of each dimmer by channel: brightness times colour.
 using DimmerSettings = std::vector<Rgb>;
 
-// One dimmer for every name of lights, in order of appearance. Beyond `most`, the weakest share the
-// last one. Each dimmer takes a copy of the scene's arrays, so large scenes get fewer.
+// Returns one dimmer per light name, in order of appearance. If there are more than `most`, the
+// weakest share the last one. Each dimmer needs a copy of the scene's arrays, so large scenes get
+// fewer dimmers.
 std::vector<Dimmer> dimmers_of(const Scene& scene, size_t most);
 
 constexpr size_t most_dimmers = 16;
 
 // A scene with all its light, under each dimmer alone, and under given settings. The first two are
-// made on first request and kept. Every function may be called from any thread.
+// prepared on first request and kept. All functions are thread-safe.
 class Lighting {
  public:
   explicit Lighting(Scene scene);
 
   const std::vector<Dimmer>& dimmers() const { return dimmers_; }
-  // What needs no tracer: of the scene as it came.
+  // Properties of the original scene; they need no tracer.
   bool is_photometric() const { return is_photometric_; }
   const std::vector<Camera>& cameras() const { return cameras_; }
   const Vec3d& origin() const { return origin_; }
@@ -45,9 +48,9 @@ class Lighting {
 
   std::shared_ptr<const PreparedScene> whole();
   std::shared_ptr<const PreparedScene> dimmer(size_t number);
-  // One factor per dimmer; not kept.
+  // One factor per dimmer; the result is not kept.
   std::shared_ptr<const PreparedScene> dimmed(const DimmerSettings& settings);
-  // Calls look(scene) where whole() has not been made yet, which then waits.
+  // Calls look(scene) if whole() has not prepared the scene yet. whole() waits until it returns.
   void before_preparing(const std::function<void(const Scene&)>& look);
 
  private:

@@ -24,17 +24,17 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A request under way.
+// A request in progress.
 struct Exchange {
   HttpRequest request;
   bool is_refused = false;
 };
 
-// Where a connection is.
+// State of a connection.
 struct Connection {
   int socket = -1;
   Clock::time_point since;
-  bool is_answered = false;  // the request is there, and the answer under way
+  bool is_answered = false;  // the request is complete, the answer is being sent
 };
 
 std::string_view header(MHD_Connection* c, const char* name) {
@@ -48,7 +48,7 @@ MHD_Result add_argument(void* into, MHD_ValueKind, const char* name, const char*
 }
 
 MHD_Result send(MHD_Connection* c, const HttpResponse& r) {
-  // libmicrohttpd copies, and does not write to it.
+  // libmicrohttpd copies the body and does not write to it.
   MHD_Response* response = MHD_create_response_from_buffer(
       r.body.size(), const_cast<char*>(r.body.data()), MHD_RESPMEM_MUST_COPY);
   if (response == nullptr) return MHD_NO;
@@ -71,9 +71,9 @@ MHD_Result send(MHD_Connection* c, const HttpResponse& r) {
   return result;
 }
 
-// libmicrohttpd keeps arguments in the memory of the connection, before anybody is asked. Where
-// that is full it cannot even say so, and would wait until the connection times out: an address of
-// too many is refused here, and the connection ends.
+// Refuses an address with too many arguments and ends the connection. libmicrohttpd stores
+// arguments in the connection's memory before any callback runs. If that memory is full, it cannot
+// report it and would wait for the timeout.
 void refuse_many_arguments(MHD_Connection* c, std::string_view uri) {
   constexpr std::ptrdiff_t most_arguments = 64;
   if (std::count(uri.begin(), uri.end(), '&') < most_arguments) return;
@@ -87,7 +87,7 @@ void refuse_many_arguments(MHD_Connection* c, std::string_view uri) {
   shutdown(info->connect_fd, SHUT_RDWR);
 }
 
-// Whether it is told in two ways where the body ends.
+// True if the headers state the length of the body more than once.
 bool has_two_lengths(MHD_Connection* c) {
   int lengths = 0;
   const auto count = [](void* into, MHD_ValueKind, const char* name, const char*) {
@@ -115,7 +115,7 @@ struct HttpServer::Parts {
   std::mutex mutex;
   std::map<MHD_Connection*, Connection> connections;
 
-  // What is wrong with the head of a request; else status 200. Sets the path.
+  // Checks the head of a request and sets its path. Returns status 200, or a refusal.
   HttpResponse check(MHD_Connection* c, const char* url, std::string_view method,
                      Exchange& e) const;
   bool is_own_host(std::string_view host) const;
@@ -127,12 +127,12 @@ struct HttpServer::Parts {
 
 namespace {
 
-// From C, which no exception may pass through.
+// Keeps exceptions from passing through C code.
 template <class Act>
 MHD_Result guarded(const Act& act) {
   try {
     return act();
-  } catch (...) {  // memory is out: the connection ends
+  } catch (...) {  // out of memory: the connection ends
     return MHD_NO;
   }
 }
@@ -154,12 +154,12 @@ HttpResponse HttpServer::Parts::check(MHD_Connection* c, const char* url, std::s
     return refusal(403, "not from this page");
   const std::string_view path = url;
   const size_t end = path.find('/', 1);
-  // Nobody learns what there is without the token, nor whether an address lacks but the slash.
+  // Without the token all addresses look alike, even one that lacks only its final slash.
   if (path.empty() || path[0] != '/' || end == path.npos ||
       !is_same_token(path.substr(1, end - 1), token))
     return refusal(404, "nothing here");
   e.request.is_post = method == MHD_HTTP_METHOD_POST;
-  // The answer to HEAD is that to GET, without its body: libmicrohttpd sees to that.
+  // libmicrohttpd answers HEAD with the headers of GET.
   if (!e.request.is_post && method != MHD_HTTP_METHOD_GET && method != MHD_HTTP_METHOD_HEAD)
     return refusal(405, "GET, HEAD or POST");
   if (has_two_lengths(c)) return refusal(400, "the length is told twice");
@@ -193,14 +193,14 @@ MHD_Result HttpServer::Parts::answer(MHD_Connection* c, Exchange& e) {
   return send(c, response);
 }
 
-// Is called for the head of a request, for every piece of its body, and at its end.
+// Called for the head of a request, for every piece of its body, and at its end.
 MHD_Result HttpServer::Parts::take(MHD_Connection* c, const char* url, const char* method,
                                    const char* data, size_t* size, void** exchange) {
   if (*exchange == nullptr) {
     auto e = std::make_unique<Exchange>();
     const HttpResponse refused = check(c, url, method, *e);
     e->is_refused = refused.status != 200;
-    Exchange* const held = e.release();  // until `completed`
+    Exchange* const held = e.release();  // freed in on_completed
     *exchange = held;
     if (held->is_refused) return send(c, refused);
     MHD_get_connection_values(c, MHD_GET_ARGUMENT_KIND, add_argument, &held->request.query);
@@ -208,7 +208,7 @@ MHD_Result HttpServer::Parts::take(MHD_Connection* c, const char* url, const cha
   }
   Exchange& e = *static_cast<Exchange*>(*exchange);
   if (*size == 0) return e.is_refused ? MHD_NO : answer(c, e);
-  // A body that says no length.
+  // The body may come without a stated length.
   if (e.request.body.size() + *size > limits.body_bytes) return MHD_NO;
   e.request.body.append(data, *size);
   *size = 0;
@@ -282,7 +282,7 @@ std::string HttpServer::address() const {
 
 void HttpServer::drop_slow_clients() {
   Parts& p = *parts_;
-  const std::lock_guard lock(p.mutex);  // sockets stay open as long as they stand here
+  const std::lock_guard lock(p.mutex);  // sockets of listed connections are open
   for (auto& [connection, c] : p.connections) {
     const std::chrono::duration<double> taken = Clock::now() - c.since;
     if (taken.count() > (c.is_answered ? p.limits.response_seconds : p.limits.request_seconds))

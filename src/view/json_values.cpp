@@ -66,7 +66,7 @@ Camera camera_of_json(const nlohmann::json& object, const Camera& base, const Ve
   c.position = Vec3(vector_in(object, "eye") - origin);
   const Vec3 forward(vector_in(object, "forward")), up(vector_in(object, "up"));
   const Vec3 side = cross(forward, up);
-  constexpr float shortest = 1e-6f;  // squares of products of much less lose digits
+  constexpr float shortest = 1e-6f;  // squares of much shorter vectors lose digits
   if (!(std::min(length(forward), length(up)) >= shortest) ||
       !(length(side) > 1e-6f * length(forward) * length(up)))
     throw UsageError("forward and up must have a length, and differ");

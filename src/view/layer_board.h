@@ -1,4 +1,4 @@
-// Where pictures are put as they are made, and taken from by whoever shows them; by any thread.
+// Holds the newest picture of each layer, between the threads that render and those that show them.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,20 @@
 
 namespace troffer {
 
+// A picture of one layer.
 struct ViewLayer {
   Image image;
-  uint64_t version = 0;  // grows with every picture put up
-  uint64_t view = 0;     // of which request
-  double error = 0;      // standard error of a pixel, relative; 0: not known yet
+  uint64_t version = 0;  // grows with every picture on the board
+  uint64_t view = 0;     // number of the view that it belongs to
+  double error = 0;      // relative standard error of a pixel; 0: unknown
 };
 
+// Layers by name. Thread-safe.
 class LayerBoard {
  public:
   void put(const std::string& name, Image image, uint64_t view, double error);
-  std::shared_ptr<const ViewLayer> get(const std::string& name) const;  // null: there is none
-  // By name, without the pixels.
+  std::shared_ptr<const ViewLayer> get(const std::string& name) const;  // null: no such layer
+  // Returns all layers without their pixels.
   std::map<std::string, ViewLayer> list() const;
   void remove(const std::string& name);
 

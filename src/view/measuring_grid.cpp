@@ -10,7 +10,8 @@ namespace troffer {
 
 namespace {
 
-// Of a plane's directions: level where the plane is upright, along a world axis where it lies.
+// Returns a unit direction in the plane: level if the plane is steep, along a world axis if it is
+// flat.
 Vec3d side_of(const Vec3& normal, const Vec3& up) {
   const Vec3 level = cross(up, normal);
   constexpr float nearly_flat = 0.1f;

@@ -59,7 +59,7 @@ void MeasuringQueue::run() {
     std::string failure;
     try {
       values = values_of(task);
-    } catch (const std::exception& e) {  // memory
+    } catch (const std::exception& e) {  // out of memory
       failure = e.what();
     }
     const std::lock_guard lock(mutex_);
@@ -80,7 +80,7 @@ std::vector<std::vector<Measurement>> MeasuringQueue::values_of(const MeasuringT
     const auto scene = is_whole ? task.lighting->whole() : task.lighting->dimmer(i);
     if (k.scene != scene) k = {scene, {}};
     MeasureOptions o = options_;
-    CellStore cells = k.cells;  // a stop leaves none
+    CellStore cells = k.cells;  // a stopped run leaves no cells
     o.cells = &cells;
     const MeasureResult result = measure(*scene, task.points, o, nullptr, stop_);
     if (!result.is_complete) break;

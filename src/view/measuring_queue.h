@@ -1,4 +1,5 @@
 // Measures points that users pick, in the background, one list after the other.
+// ViewService adds tasks and asks for their answers. Illuminance is in lx.
 #pragma once
 
 #include <condition_variable>
@@ -17,16 +18,18 @@
 
 namespace troffer {
 
+// Points to measure in a scene.
 struct MeasuringTask {
   std::shared_ptr<Lighting> lighting;
   std::vector<MeasuringPoint> points;
-  bool by_dimmers = false;  // by each dimmer alone; else by all light together
+  bool by_dimmers = false;  // true: under each dimmer alone; false: under all light
 };
 
+// State and result of a task.
 struct MeasuringAnswer {
   MeasuringTask task;
-  // [dimmer][point]; one row where the task is by all light together. Illuminance of all light by
-  // settings d of the dimmers is Σ d E, its standard error the root of Σ (d σ)².
+  // Values as [dimmer][point]; a single row if measured under all light. With dimmer settings d the
+  // illuminance is Σ d E, and its standard error is the root of Σ (d σ)².
   std::vector<std::vector<Measurement>> values;
   bool is_done = false;
   std::string failure;
@@ -34,6 +37,7 @@ struct MeasuringAnswer {
 
 constexpr size_t most_measuring_points = 10'000;
 
+// Runs tasks in order on a thread of its own. Thread-safe.
 class MeasuringQueue {
  public:
   explicit MeasuringQueue(const MeasureOptions& options);
@@ -41,13 +45,14 @@ class MeasuringQueue {
   MeasuringQueue(const MeasuringQueue&) = delete;
   MeasuringQueue& operator=(const MeasuringQueue&) = delete;
 
-  // The number of the task. UsageError for more points, or more tasks at a time, than there may be.
+  // Queues a task and returns its number. Throws UsageError if it has too many points, or if too
+  // many tasks are waiting.
   uint64_t add(const MeasuringTask& task);
-  // Nothing of numbers that were never given or are long past.
+  // Returns the answer of a task; empty if the number is unknown or its answer has been discarded.
   std::optional<MeasuringAnswer> answer(uint64_t number) const;
 
  private:
-  // Cells, and the scene that they belong to.
+  // Cells of one light, and the scene they belong to.
   struct Kept {
     std::shared_ptr<const PreparedScene> scene;
     CellStore cells;
@@ -63,8 +68,8 @@ class MeasuringQueue {
   uint64_t last_ = 0;
   bool is_ending_ = false;
   StopFlag stop_ = false;
-  std::map<size_t, Kept> kept_;  // by dimmers; whole: their number
-  std::thread thread_;           // last: it uses all the others
+  std::map<size_t, Kept> kept_;  // by dimmer; key for all light: number of dimmers
+  std::thread thread_;           // last member: its thread uses all others
 };
 
 }  // namespace troffer

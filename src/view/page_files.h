@@ -1,4 +1,4 @@
-// The page, which the build puts into the program (cmake/embed.cmake) from src/view/page/.
+// Files of the page from src/view/page/, which the build embeds in the program (cmake/embed.cmake).
 #pragma once
 
 #include <span>
@@ -6,8 +6,9 @@
 
 namespace troffer {
 
+// One embedded file.
 struct PageFile {
-  std::string_view name;  // of the file
+  std::string_view name;  // file name
   std::string_view text;
 };
 

@@ -14,9 +14,9 @@ namespace troffer {
 
 namespace {
 
-constexpr int fewest_blocks = 16;  // of a first picture, along its longer side
+constexpr int fewest_blocks = 16;  // blocks of a first picture along its longer side, at least
 
-// Nearest pixels.
+// Resizes an image by nearest pixels.
 Image resized(const Image& from, int width, int height) {
   Image to(width, height);
   for (int y = 0; y < height; ++y)
@@ -55,7 +55,7 @@ uint64_t Painter::show(const ViewRequest& request) {
   const std::lock_guard lock(mutex_);
   orders_.request = request;
   orders_.asked = Clock::now();
-  // The first picture of the view under way is nearly there: it is worth more than nothing.
+  // The first picture of the current view is nearly done, and is better than none: let it finish.
   if (orders_.may_cancel) cancel_ = true;
   orders_.has_dimmers = false;
   ++orders_.number;
@@ -69,7 +69,7 @@ void Painter::set_extras(const ViewExtras& extras) {
   const bool is_sum = orders_.has_dimmers && orders_.extras.is_dimmed() && extras.is_dimmed() &&
                       orders_.extras.second == extras.second;
   orders_.extras = extras;
-  if (is_sum) return;  // other settings, and the page has all the layers that it adds up
+  if (is_sum) return;  // only the settings changed, and the page has all layers to add up
   if (orders_.may_cancel) cancel_ = true;
   ++orders_.number;
   changed_.notify_all();
@@ -107,7 +107,7 @@ void Painter::run() {
     std::string failure;
     try {
       if (orders.request.lighting) paint(orders);
-    } catch (const std::exception& e) {  // memory, or a camera beyond measure
+    } catch (const std::exception& e) {  // out of memory, or an extreme camera
       failure = e.what();
     }
     const std::lock_guard lock(mutex_);
@@ -142,7 +142,8 @@ void Painter::paint(const Orders& orders) {
   if (!cancel_) tell("done", 1);
 }
 
-// Adds the works that the orders ask for and that are not there yet, in the order of their looks.
+// Adds the works that the orders ask for and removes those that are not wanted any more, in the
+// order of their first pictures.
 void Painter::add_works(const Orders& orders) {
   Lighting& lighting = *orders.request.lighting;
   const auto add = [&](const std::string& layer, int dimmer, const Method& method) {
@@ -176,7 +177,7 @@ void Painter::add_works(const Orders& orders) {
   }
 }
 
-// Where the tracer takes a while to build: something to see meanwhile.
+// Shows a first sight of the scene while its tracer is built.
 void Painter::sight(const Orders& orders) {
   const ViewRequest& r = orders.request;
   r.lighting->before_preparing([&](const Scene& scene) {
@@ -201,7 +202,7 @@ RenderOptions Painter::options_of(const ViewRequest& r, const Work& work, const 
   return o;
 }
 
-// The first picture, by paths; of `of` such pictures that share its time.
+// Renders the first picture, by paths. It gets the share 1/of of the time for first pictures.
 void Painter::look(const Orders& orders, Work& work, size_t of) {
   if (cancel_) return;
   const ViewRequest& r = orders.request;
@@ -223,8 +224,8 @@ void Painter::look(const Orders& orders, Work& work, size_t of) {
   preview.look(scene, r.camera, options, cancel_);
 }
 
-// A first picture took so long: the next one is as coarse as lets it come in time. Twice as many
-// blocks along a side are four times the work.
+// Adapts the resolution of the next first picture to the time that this one took. Twice as many
+// blocks along a side cost four times the work.
 void Painter::learn_pace(std::chrono::duration<double> taken) {
   constexpr double aim = 0.08;
   const double most = PreviewPace().first_blocks;
@@ -232,7 +233,7 @@ void Painter::learn_pace(std::chrono::duration<double> taken) {
                        double(fewest_blocks), most);
 }
 
-// Pass by pass: of what is shown first, and of each layer's coarse ones first.
+// Runs the passes: layers that are shown come first, and the coarse passes of each layer.
 void Painter::go_through(const Orders& orders) {
   const bool wants_dimmers = orders.extras.is_dimmed();
   constexpr size_t coarse_passes = 2;
@@ -264,13 +265,13 @@ void Painter::pass(const Orders& orders, Work& work) {
                             options_.threads, nullptr, cancel_);
   RenderOptions o = options_of(r, work, pass);
   o.preparation = k.preparation.get();
-  CellStore cells = k.cells;  // a stop leaves none
+  CellStore cells = k.cells;  // a stopped pass leaves no cells
   o.cells = &cells;
   PreviewPace pace;
   pace.interval = 0.5;
   Preview preview([&](const Image& image) { put(orders, work, image, 0); }, pace);
-  // Tiles of the first picture of full size are shown as they come; of later ones only the mean is
-  // better than what is there.
+  // Tiles of the first picture of full size are shown as they come. Of a later pass only the mean
+  // with earlier passes improves the picture.
   const bool is_shown = work.next > 0 && work.passes[work.next - 1].shrink > pass.shrink;
   if (is_shown) {
     preview.go_on_from(resized(work.mean.mean(), o.width, o.height), {0, 0, o.width, o.height});
@@ -296,7 +297,8 @@ std::shared_ptr<const PreparedScene> Painter::scene_of(const Work& work) {
   return work.dimmer >= 0 ? lighting_->dimmer(size_t(work.dimmer)) : lighting_->whole();
 }
 
-// Cells and their rows stay when only light changes; what lights them is computed anew.
+// Returns what is kept for a work. If only the light changed, cells and rows stay, and their direct
+// light is computed again.
 Painter::Kept& Painter::kept(const Work& work) {
   const std::shared_ptr<const PreparedScene> scene = scene_of(work);
   const std::string name =
@@ -331,7 +333,7 @@ void Painter::put(const Orders& orders, const Work& work, const Image& image, do
   if (is_whole && shown_) shown_(image);
 }
 
-// For the page's status line.
+// Describes the work for the page's status line.
 std::string Painter::stage_of(const Work& work) const {
   const std::string pass = fmt::format("step {} of {}", work.next + 1, work.passes.size());
   if (work.dimmer >= 0)

@@ -1,16 +1,14 @@
-// Makes the pictures of a view, coarse at once and then finer and finer, on a thread of its own.
+// Renders the pictures of a view on a thread of its own: coarse at once, then finer and finer.
 //
-// The first one is by a few paths (render/preview.h) and is put up before anything else may
-// interrupt the work, so that whoever moves on and on sees every step. What is prepared for the
-// scene is kept from view to view: tracer, cells, radiosity.
+// The first picture uses a few paths (render/preview.h) and always completes, so that users who
+// keep moving see every step. Tracer, cells and radiosity of a scene are kept from view to view.
 //
-// Layers that are put up: "whole", all light; "albedo" of what is seen first, and "error", the
-// standard error of the luminance, once the method tells of them; "dimmer0" … by one dimmer alone,
-// "dimmed" by all as they are set, and "second", by another method. Their names say what they are
-// of; their `view` of which camera.
+// Layers on the board: "whole" (all light), "albedo" and "error" (standard error of luminance) of
+// first hits if the method provides them, "dimmer0" … (one dimmer alone), "dimmed" (all dimmers as
+// set), and "second" (another method). A layer's `view` tells its camera.
 // While a dimmer is set, "dimmed" is the first picture after every move and every change of
-// settings, and the dimmers' own layers come before "whole": once they are there, the page adds
-// them up by itself. Otherwise coarse layers by dimmers are made once "whole" is done.
+// settings. The dimmers' layers then come before "whole", and the page adds them up once they are
+// complete. Otherwise coarse layers by dimmers follow when "whole" is done.
 #pragma once
 
 #include <atomic>
@@ -34,39 +32,42 @@
 
 namespace troffer {
 
+// The view to render.
 struct ViewRequest {
   std::shared_ptr<Lighting> lighting;
   Camera camera;
   ImageSize size{};
 };
-// Requests that keep the layers of a view.
+// Settings that keep the layers of a view.
 struct ViewExtras {
   DimmerSettings settings;       // one factor per dimmer; empty: no dimmer is set
-  std::optional<Method> second;  // shown beside
+  std::optional<Method> second;  // another method to show next to the first
   bool operator==(const ViewExtras&) const = default;
   bool is_dimmed() const { return settings.size() > 1; }
 };
 
+// Progress, for the page's status line.
 struct PaintingState {
   uint64_t view = 0;
   std::string stage;  // for people
   double progress = 0, seconds = 0;
   double seconds_to_first = 0;  // from the request to its first picture; 0: not there yet
-  std::string failure;          // why there is none; empty: all is well
+  std::string failure;          // why there is no picture; empty: no failure
 };
 
-// Fourteen members: what it is made with, what other threads tell it, and what is under way.
+// Renders views. Fourteen members: its environment, orders from other threads, and work in
+// progress. Public functions are thread-safe.
 class Painter {
  public:
   using Shown = std::function<void(const Image&)>;
-  // options: method, error, seed, threads. The board must outlive this. shown: is called with every
-  // picture of all light; may be null.
+  // options: method, error, seed, threads. The board must outlive the painter. shown: called with
+  // every picture under all light; may be null.
   Painter(LayerBoard& board, const RenderOptions& options, Shown shown);
   ~Painter();
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
 
-  // What is to be shown from now on; returns the number of the view.
+  // Starts a new view and returns its number.
   uint64_t show(const ViewRequest& request);
   void set_extras(const ViewExtras& extras);
   ViewRequest request() const;
@@ -75,32 +76,32 @@ class Painter {
 
  private:
   using Clock = std::chrono::steady_clock;
-  // What is kept of a scene by one light.
+  // Preparation kept for a scene under one light.
   struct Kept {
     std::shared_ptr<const PreparedScene> scene;
-    std::shared_ptr<const PreparedScene> traced;  // cells hold on to its tracer
+    std::shared_ptr<const PreparedScene> traced;  // scene whose tracer the cells refer to
     CellStore cells;
     std::unique_ptr<Preparation> preparation;
   };
-  // A layer of the view under way.
+  // A layer of the current view.
   struct Work {
     std::string layer;
-    int dimmer = -1;                              // by its light alone; -1: all light
-    std::shared_ptr<const PreparedScene> dimmed;  // "dimmed" alone has a scene of its own
+    int dimmer = -1;                              // the dimmer that lights it alone; -1: all light
+    std::shared_ptr<const PreparedScene> dimmed;  // scene of the layer "dimmed"
     Method method = Method::certified;
     std::vector<Pass> passes;
-    size_t next = 0;  // of these
+    size_t next = 0;  // index of the next pass
     bool has_first = false;
     PassMean mean;
   };
-  // What is to be done, and how far it is.
+  // Orders of other threads, and their state.
   struct Orders {
     ViewRequest request;
     ViewExtras extras;
-    uint64_t view = 0, number = 0;  // the number grows with every order, the view with its request
-    Clock::time_point asked;        // the view
+    uint64_t view = 0, number = 0;  // `number` grows with every order, `view` with every view
+    Clock::time_point asked;        // time of the view's request
     bool is_ending = false, may_cancel = false;
-    bool has_dimmers = false;  // every dimmer has a layer of this view: the page can add them up
+    bool has_dimmers = false;  // every dimmer has a layer of this view, for the page to add up
     PaintingState state;
   };
 
@@ -124,15 +125,15 @@ class Painter {
   const Shown shown_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  Orders orders_;  // by the mutex
+  Orders orders_;  // guarded by the mutex
   StopFlag cancel_ = false;
-  std::vector<Work> works_;  // of this view
+  std::vector<Work> works_;  // of the current view
   double blocks_ = PreviewPace().first_blocks;
   uint64_t view_ = 0;
   Clock::time_point begun_;
   std::shared_ptr<Lighting> lighting_;
   std::map<std::string, Kept> kept_;
-  std::thread thread_;  // last: it uses all the others
+  std::thread thread_;  // last member: its thread uses all others
 };
 
 }  // namespace troffer

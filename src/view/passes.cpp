@@ -17,7 +17,7 @@ std::vector<Pass> passes_to(const Method& method, double error) {
     }
     return passes;
   }
-  // Cells are as large as the first pass asks for: none much coarser than the last.
+  // The first pass sets the size of cells, so it must not be much coarser than the last.
   constexpr double coarse = 0.05;
   double at = std::max(coarse, error);
   passes.push_back({2, at, few_samples, 1 / (at * at)});

@@ -1,4 +1,5 @@
-// A picture by passes, each finer than the one before and with noise of its own, and their mean.
+// Splits a picture into passes, each finer than the one before and with independent noise, and
+// averages them. Painter uses it.
 #pragma once
 
 #include <cstdint>
@@ -9,26 +10,28 @@
 
 namespace troffer {
 
+// Settings of one pass.
 struct Pass {
-  int shrink = 1;       // of the picture's sides
-  double error = 0.05;  // asked, where the method takes one
+  int shrink = 1;       // divisor of the picture's width and height
+  double error = 0.05;  // asked error, for methods that take one
   int spp = 4;
-  double weight = 1;  // in the mean
+  double weight = 1;  // weight in the mean
 };
 
-// For a method that takes an error: at half the size, whole, and then by half the error until it is
-// what is asked for. For others: by ever more samples, 512 in all.
+// Returns the passes for a method. Methods that take an error start at half size, continue at full
+// size, and halve the error until it meets the asked one. Other methods double their samples, 512
+// in all.
 std::vector<Pass> passes_to(const Method& method, double error);
 
-// The mean of passes of one size, and what it errs by. Starts anew where the size changes.
+// Mean of passes of one size, and its error. It starts again if the size changes.
 class PassMean {
  public:
-  // error: the standard error of each pixel's luminance, in r; empty: not known.
+  // error: standard error of each pixel's luminance, in r; empty: unknown.
   void add(const Image& picture, const Image& error, double weight);
   Image mean() const;
-  // Likewise, passes taken as independent.
+  // Standard error of the mean's luminance, in r; passes count as independent.
   Image error() const;
-  // Root of the mean square of error(), over the mean luminance.
+  // Returns the root mean square of error(), over the mean luminance.
   double relative_error() const;
 
  private:

@@ -21,13 +21,13 @@ constexpr uint8_t create_image = 4, update_image = 6;
 constexpr const char* image_name = "troffer";
 constexpr std::array<const char*, 3> channels{"R", "G", "B"};
 
-// A packet begins with its length in bytes, these four among them.
+// A packet starts with its length in bytes, which includes these four.
 class Packet {
  public:
   explicit Packet(uint8_t type) {
     add(uint32_t(0));
     add(type);
-    add(uint8_t(0));  // does not ask to be looked at
+    add(uint8_t(0));  // does not bring the image to the front
     add_text(image_name);
   }
   template <class T>
@@ -74,7 +74,7 @@ int connected(const std::string& host, const std::string& port) {
   for (const addrinfo* a = found; a != nullptr && s < 0; a = a->ai_next) {
     s = socket(a->ai_family, a->ai_socktype | SOCK_CLOEXEC, a->ai_protocol);
     if (s < 0) continue;
-    // Nobody who does not read holds the program up when it ends.
+    // A receiver that does not read must not delay the end of the program.
     const timeval limit{5, 0};
     setsockopt(s, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof(limit));
     if (connect(s, a->ai_addr, a->ai_addrlen) == 0) break;

@@ -1,4 +1,4 @@
-// The secret in the address of a page: who does not know it gets nothing.
+// Makes and compares the secret in the page's address. Requests without it are refused.
 #pragma once
 
 #include <string>
@@ -6,11 +6,11 @@
 
 namespace troffer {
 
-// 128 bits of the system's random numbers, as 32 hexadecimal digits. EnvironmentError where there
-// are none.
+// Returns 128 bits of the system's random numbers as 32 hexadecimal digits. Throws EnvironmentError
+// if there are none.
 std::string random_token();
 
-// Takes as long wherever the two differ, so that nobody finds a token digit by digit.
+// Compares in constant time, so that a token cannot be guessed digit by digit.
 bool is_same_token(std::string_view given, std::string_view token);
 
 }  // namespace troffer

@@ -1,4 +1,4 @@
-// `troffer view`: a page that shows a scene, from start to end.
+// Runs `troffer view`: a page that shows a scene, from start to end.
 #pragma once
 
 #include <functional>
@@ -8,16 +8,17 @@
 
 namespace troffer {
 
+// Settings for the start of the page.
 struct ViewStart {
-  uint16_t port = 0;        // 0: any that is free
-  std::string tev;          // HOST:PORT of a tev that gets the pictures too; empty: none
-  bool has_camera = false;  // ViewSettings::camera is one; else one is placed
-  // Is told where the page is, once it is there.
+  uint16_t port = 0;        // 0: any free port
+  std::string tev;          // HOST:PORT of a tev that also gets the pictures; empty: none
+  bool has_camera = false;  // ViewSettings::camera is set; otherwise one is placed
+  // Called with the page's address once it is served.
   std::function<void(const std::string& address)> tell;
 };
 
-// Serves the page until it asks for the end (true) or `stop` is set (false). Throws
-// EnvironmentError where the port, or tev, is not to be had.
+// Serves the page until the page asks to close (returns true) or `stop` is set (returns false).
+// Throws EnvironmentError if the port or tev is not available.
 bool view(Scene scene, ViewSettings settings, const ViewStart& start, const StopFlag& stop);
 
 }  // namespace troffer

@@ -49,7 +49,7 @@ std::string as_text(const std::vector<uint8_t>& bytes) {
   return {bytes.begin(), bytes.end()};
 }
 
-// A name that EXR takes as part of a channel's.
+// Replaces characters that EXR does not allow in a part of a channel's name.
 std::string channel_name(std::string name) {
   for (char& c : name)
     if (c == '.' || static_cast<unsigned char>(c) <= ' ') c = '_';
@@ -153,7 +153,8 @@ HttpResponse ViewService::state() const {
   return json_response(j);
 }
 
-// Four words, width, height, channels and version, and then floats, row by row from the top.
+// The body is four 32-bit words (width, height, channels, version), then floats, row by row from
+// the top.
 HttpResponse ViewService::layer(const HttpRequest& r) const {
   const std::string name = value_of(r, "name");
   const auto l = board_.get(name);
@@ -306,7 +307,7 @@ HttpResponse ViewService::grid(const std::string& body) {
       {{"columns", g.columns}, {"rows", g.rows}, {"width", g.width}, {"depth", g.depth}});
 }
 
-// The points of a task once more: by dimmers, or by another light.
+// Measures the points of a task again, by dimmers or under another light.
 HttpResponse ViewService::measure_again(const std::string& body) {
   const json j = parse_object(body);
   const auto a = desk_.answer(uint64_t(number_in(j, "number", 0, 1e15)));

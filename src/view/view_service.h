@@ -1,4 +1,4 @@
-// What the page asks for, and the answers: the names behind the token (docs/view.md).
+// Answers the page's requests: the paths after the token (docs/reference/view.md). HttpServer calls answer().
 #pragma once
 
 #include <atomic>
@@ -15,28 +15,30 @@
 
 namespace troffer {
 
+// Initial state of the page.
 struct ViewSettings {
-  Camera camera;              // at the start
-  int width = 0, height = 0;  // of the picture; 0: by the camera, of moderate size
+  Camera camera;              // first camera
+  int width = 0, height = 0;  // size of the picture; 0: moderate_size() of the camera
   Vec3 up{0, 1, 0};
   RenderOptions options;  // method, indirect light, error, seed, threads
-  std::string file;       // of the scene
-  std::string notice;     // what whoever looks must know; empty: nothing
-  // The time of day that light from the sky is of, "2026-06-21T12:00+02:00"; empty: none is known.
+  std::string file;       // scene file
+  std::string notice;     // a notice for the user; empty: none
+  // Time of the daylight, "2026-06-21T12:00+02:00"; empty: unknown.
   std::string time;
-  // The scene at another time; may be null. May throw UsageError and InputError.
+  // Returns the scene at another time; may be null. May throw UsageError and InputError.
   std::function<Scene(const std::string& time)> relit;
 };
 
+// Connects the page with painter, board and measuring queue.
 class ViewService {
  public:
-  // All must outlive this. Shows the first camera at once.
+  // All arguments must outlive the service. Shows the first camera at once.
   ViewService(std::shared_ptr<Lighting> lighting, ViewSettings settings, LayerBoard& board,
               Painter& painter, MeasuringQueue& desk);
 
-  // UsageError for what makes no sense. From one thread at a time.
+  // Answers a request. Throws UsageError for invalid ones. Call from one thread at a time.
   HttpResponse answer(const HttpRequest& request);
-  // The page has asked for the end.
+  // True if the page has asked to close.
   bool is_closed() const { return is_closed_; }
 
  private:
@@ -64,8 +66,8 @@ class ViewService {
   std::atomic<bool> is_closed_ = false;
 };
 
-// Width and height for a camera where none are asked for: its aspect ratio, and few enough pixels
-// that a first picture is there soon.
+// Returns the picture's size for a camera if none is asked for: its aspect ratio, and few enough
+// pixels for a quick first picture.
 ImageSize moderate_size(const Camera& camera);
 
 }  // namespace troffer

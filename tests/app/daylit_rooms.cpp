@@ -46,7 +46,7 @@ Rectangle Room::opening() const {
 
 namespace {
 
-// A rectangle of 4 m by `size` less the opening's part of it; both as (u, v) along its sides.
+// Adds a rectangle without a hole; `hole` is given as (u, v) along its sides.
 void add_around(const Rectangle& whole, const std::array<double, 4>& hole,
                 std::vector<Rectangle>& out) {
   const auto part = [&](double u0, double u1, double v0, double v1) {
@@ -81,7 +81,7 @@ std::vector<Rectangle> Room::walls() const {
 }
 
 Luminance cie_sky_of(int type, double ground_reflectance) {
-  // [2]: a, b of the gradation; c, d, e of the indicatrix
+  // [2]: a, b: gradation; c, d, e: indicatrix
   static constexpr double table[15][5] = {
       {4, -.7, 0, -1, 0},       {4, -.7, 2, -1.5, .15},  {1.1, -.8, 0, -1, 0},
       {1.1, -.8, 2, -1.5, .15}, {0, -1, 0, -1, 0},       {0, -1, 2, -1.5, .15},
@@ -131,7 +131,7 @@ double illuminance_through(
 }
 
 double illuminance_of(const Rectangle& even, const Point& p, double luminance) {
-  // Clipped to what lies above the point's horizon.
+  // Clip the rectangle to the point's horizon.
   const Vec3d corners[] = {even.corner, even.corner + even.along,
                            even.corner + even.along + even.across, even.corner + even.across};
   std::vector<Vec3d> seen;

@@ -62,7 +62,7 @@ std::string read_file(const std::string& path) {
 }
 
 std::string Finished::remarks() const {
-  // A slow machine prints progress lines: "render: 44 % after 3 s, 54 MB, 4 s left".
+  // A slow machine prints progress lines, such as "render: 44 % after 3 s, 54 MB, 4 s left".
   std::string text;
   std::istringstream in(err);
   for (std::string line; std::getline(in, line);)
@@ -104,7 +104,7 @@ Running::Running(const Folder&, const std::vector<std::string>& arguments,
   const int err = open(err_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   dup2(out, STDOUT_FILENO);
   dup2(err, STDERR_FILENO);
-  // doctest has handlers of its own, and a shell's background job ignores SIGINT.
+  // doctest installs handlers of its own, and background jobs of a shell ignore SIGINT.
   signal(SIGINT, SIG_DFL);
   signal(SIGTERM, SIG_DFL);
   if (prepare) prepare();

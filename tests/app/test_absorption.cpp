@@ -1,4 +1,4 @@
-// Coloured glass, far textures and one-sided surfaces as they are seen, by `path` and the default.
+// Coloured glass, distant textures and one-sided surfaces, rendered by `path` and by the default.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ using namespace troffer::test;
 
 namespace {
 
-// Mean of a picture of 16 × 16 pixels.
+// Returns the mean of a picture of 16 × 16 pixels.
 Rgb mean_seen(const std::string& name, const std::string& scene,
               const std::vector<std::string>& options) {
   const Folder folder;
@@ -32,7 +32,7 @@ Rgb mean_seen(const std::string& name, const std::string& scene,
   return sum / float(image.width * image.height);
 }
 
-// A slab of glass of that thickness before a white sky, seen through a narrow angle.
+// A slab of glass in front of a white sky, seen through a narrow field of view.
 std::string slab(double thickness, const std::string& absorption) {
   return fmt::format(
       "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 2\nWorldBegin\n"
@@ -46,7 +46,7 @@ std::string slab(double thickness, const std::string& absorption) {
       thickness, absorption);
 }
 
-// Seen straight on: what is reflected and what goes through, all orders summed.
+// Returns the radiance for normal incidence: reflection and transmission, summed over all orders.
 double slab_closed_form(double absorption, double thickness) {
   const double r = 0.04, a = std::exp(-absorption * thickness);
   const double through = (1 - r) * (1 - r) * a / (1 - r * r * a * a);
@@ -56,7 +56,7 @@ double slab_closed_form(double absorption, double thickness) {
 }  // namespace
 
 TEST_CASE("a slab of glass absorbs by its thickness, a pane as well") {
-  for (const double thickness : {1.0, 0.1})  // the thinner one becomes a sheet
+  for (const double thickness : {1.0, 0.1})  // the thinner one is treated as a thin sheet
     for (const char* method : {"path", "certified"}) {
       const Rgb seen =
           mean_seen("s.pbrt", slab(thickness, ".5 1 2"), {"--method", method, "--spp", "256"});
@@ -70,7 +70,7 @@ TEST_CASE("a slab of glass absorbs by its thickness, a pane as well") {
 }
 
 TEST_CASE("a pane absorbs more of light that leans, by every method") {
-  // One light over a pane 1 m above the floor, straight above and 60 degrees off.
+  // One light over a pane 1 m above the floor: straight above, and 60 degrees off.
   const std::string scene =
       "WorldBegin\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
       "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] "
@@ -97,7 +97,7 @@ TEST_CASE("a pane absorbs more of light that leans, by every method") {
   for (const char* method : {"certified", "path", "fixed"}) {
     const auto clear = measure("0 0 0", method), grey = measure("5 5 5", method);
     for (size_t i = 0; i < 2; ++i) {
-      // sin of 60 degrees over 1.5 inside; what is reflected within changes it by little
+      // 60 degrees outside, refracted by index 1.5; internal reflections change little
       const double inside = i == 0 ? 1 : std::sqrt(1 - 0.75 / 2.25);
       const double expected = std::exp(-0.5 / inside);
       CAPTURE(method);
@@ -121,14 +121,14 @@ TEST_CASE("a far checkered floor has its mean at one viewing ray") {
                            "--size", "16x16", "--quiet", "--method", "fixed", "--spp", "1"});
   CAPTURE(f.err);
   REQUIRE(f.status == 0);
-  // Every pixel, not only their mean.
+  // Check every pixel, not only the mean.
   const Image seen = read_image(folder.path("o.pfm"));
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 16; ++x) CHECK(std::abs(seen.at(x, y).g - 0.6f) < 0.02f);
 }
 
-// Rows of black and white, of holes and white, and of dark and bright that shine: near by as fine
-// as a pixel, and finer.
+// Rows of black and white, of holes and white, and of dark and bright emission. Nearby they are as
+// wide as a pixel, further away narrower.
 TEST_CASE("half as many pixels see the same mean of textures, masks and shining textures") {
   const std::string look =
       "LookAt 0 -4 6  0 4 0  0 0 1\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n";

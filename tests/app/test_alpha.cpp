@@ -1,6 +1,6 @@
-// Sheets with alpha before lights, by every method and from every format: the share 1 - alpha of
-// the light arrives, whatever the light. Light from a point always takes the same way to a
-// measuring point, so a decision by ray would give all of it or nothing.
+// Sheets with alpha in front of lights, by every method and from every format: the share 1 - alpha
+// of the light arrives, for any light. Light from a point always takes the same path to a measuring
+// point, so a random decision per ray would give all or nothing.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ constexpr double alpha = 0.3;
 const char* const points = "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n.4,.3,0,0,0,1\n-.8,.6,0,0,0,1\n";
 constexpr double squared_distances[] = {0, 0.25, 1};  // from the origin
 
-// Black, 200 m wide, at a height.
+// A black sheet, 200 m wide, at a given height.
 std::string pbrt_sheet(double height, const std::string& sheet_alpha) {
   return fmt::format(
       "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
@@ -52,11 +52,11 @@ std::vector<Measured> measure(const std::string& name, const std::string& text,
 struct Light {
   const char* name;
   std::string text;
-  double (*irradiance)(double squared_distance);  // below it, at such a place
-  bool is_alike = true;                           // all its light takes one way to a point
+  double (*irradiance)(double squared_distance);  // below it, at a squared distance from the axis
+  bool is_alike = true;                           // all its light takes one path to a point
 };
 
-// I h / d³ below a point at height h.
+// Returns I h / d³ below a point light at height h.
 double below_point(double r2) {
   return 7 * 2 / std::pow(r2 + 4, 1.5);
 }
@@ -81,7 +81,7 @@ void check_measured(const std::vector<Measured>& values, const Light& light, dou
     CAPTURE(i);
     CAPTURE(values[i].lx);
     CAPTURE(expected);
-    // A sheet of 200 m leaves a rim of the surroundings.
+    // Beyond the rim of the sheet of 200 m some surroundings are visible.
     CHECK(std::abs(values[i].lx - expected) <
           (light.is_alike ? 2e-4 : 2e-3) * expected + 5 * values[i].error);
     if (light.is_alike) CHECK(values[i].error < 1e-3 * expected);
@@ -111,7 +111,8 @@ TEST_CASE("a sheet of alpha .3 leaves .7 of a light, two of them .49, by every m
 }
 
 TEST_CASE("alpha by a texture: its share where it blends, nothing where it is 1") {
-  // A checkerboard of alpha .3 and 1 across 200 m: the origin's quarter blends, another is opaque.
+  // A checkerboard of alpha .3 and 1 across 200 m: the quarter at the origin blends, its neighbours
+  // are opaque.
   const std::string texture =
       "Texture \"holes\" \"float\" \"checkerboard\" \"float uscale\" [2] \"float vscale\" [1] "
       "\"float tex1\" [.3] \"float tex2\" [1]\n";

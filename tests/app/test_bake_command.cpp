@@ -1,4 +1,4 @@
-// troffer bake: its files, its options, its ends.
+// The command `troffer bake`: files, options, exit statuses.
 #include <doctest/doctest.h>
 #include <signal.h>
 

@@ -1,7 +1,7 @@
-// The analytical cases of CIE 171:2006 by the command line, at default settings. With
-// TROFFER_CIE171=FILE in the environment all of them are measured, and the table of docs/cie171.md
-// is written there; without, a part of the skies. References: [1] CIE 171:2006, "Test cases to
-// assess the accuracy of lighting computer programs".
+// The analytical cases of CIE 171:2006 on the command line, with default settings. If the
+// environment has TROFFER_CIE171=FILE, all cases run and the table of docs/results/cie171.md is written to
+// FILE. Otherwise only some of the skies run.
+// References: [1] CIE 171:2006, "Test cases to assess the accuracy of lighting computer programs".
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ const char* table_file() {
   return std::getenv("TROFFER_CIE171");
 }
 
-// A row of the table: the largest deviation of all points, and what was right there.
+// Adds a row of the table: the largest deviation of all points, and the range of expected values.
 void tell(const std::string& number, const std::string& what, const std::vector<double>& lx,
           const std::vector<double>& expected) {
   REQUIRE(lx.size() == expected.size());
@@ -38,7 +38,7 @@ void tell(const std::string& number, const std::string& what, const std::vector<
     CAPTURE(i);
     CAPTURE(lx[i]);
     CAPTURE(expected[i]);
-    // … of 1 lx where less arrives: a wall of 1 km is not an endless one.
+    // Values below 1 lx count relative to 1 lx: a wall of 1 km is not infinite.
     const double off = std::abs(lx[i] - expected[i]) / std::max(expected[i], 1.0);
     CHECK(off < allowed);
     worst = std::max(worst, off);
@@ -74,7 +74,7 @@ std::vector<double> measure(const std::string& world, const std::vector<Point>& 
 
 const Vec3d up{0, 0, 1}, down{0, 0, -1};
 
-// On the floor and the walls of a room of 4 × 4 × 3 m, off its edges.
+// Points on the floor and walls of a room of 4 × 4 × 3 m, away from its edges.
 std::vector<Point> room_points() {
   return {{{0, 0, 0}, up},           {{1, .5, 0}, up},          {{1.75, -1.5, 0}, up},
           {{2, 0, .5}, {-1, 0, 0}},  {{2, 1, 1.5}, {-1, 0, 0}}, {{.5, 2, 2}, {0, -1, 0}},
@@ -131,8 +131,8 @@ TEST_CASE("CIE 171, 5.3: an area source of 1 m² at the ceiling") {
 
 namespace {
 
-// Flux that arrives within a room, under its opening in the ceiling: a quarter of the floor and
-// half a wall stand for all.
+// The flux that arrives in a room below its opening in the ceiling. By symmetry, a quarter of the
+// floor and half a wall suffice.
 struct InnerFlux {
   std::vector<Point> points;
   std::vector<double> weights;
@@ -176,7 +176,7 @@ TEST_CASE("CIE 171, 5.5: the directional transmittance of clear glass") {
         "\"rgb L\" [{2:.9g} {2:.9g} {2:.9g}]\n",
         std::sin(a), std::cos(a), lx / luminous_efficacy);
     const std::string pane = pbrt_glass({{{-50, -50, 1}, {100, 0, 0}, {0, 100, 0}}});
-    // facing the beam
+    // faces the beam
     const Point p{{0, 0, 0}, {std::sin(a), 0, std::cos(a)}};
     shares.push_back(measure(beam + pane, {p}, {})[0]);
     expected.push_back(pane_transmittance(std::cos(a)) * lx);
@@ -186,8 +186,8 @@ TEST_CASE("CIE 171, 5.5: the directional transmittance of clear glass") {
 }
 
 TEST_CASE("CIE 171, 5.6 and 5.7: light off a diffuse square, and past an obstruction") {
-  // A vertical beam on the square y in [0, size]: points above its edge, upright and facing down,
-  // see only what it reflects.
+  // A vertical beam hits the square y in [0, size]. Vertical and downward-facing points above its
+  // edge see only the light that it reflects.
   constexpr double lx = 10'000, reflectance = 0.3;
   const std::string sun = fmt::format(
       "LightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0] "
@@ -208,7 +208,7 @@ TEST_CASE("CIE 171, 5.6 and 5.7: light off a diffuse square, and past an obstruc
     tell("5.6", fmt::format("square of {:g} m, reflectance .3", size),
          measure(sun + pbrt_rectangles({square}, reflectance), points, {}), expected);
   }
-  // A black screen, as wide as the square of 4 m, stands across its middle.
+  // A black screen, as wide as the square of 4 m, stands across the middle of the square.
   constexpr double screen = 1;
   const Rectangle square{{-2, 0, 0}, {4, 0, 0}, {0, 4, 0}};
   const std::string world = sun + pbrt_rectangles({square}, reflectance) +
@@ -230,8 +230,8 @@ TEST_CASE("CIE 171, 5.6 and 5.7: light off a diffuse square, and past an obstruc
 }
 
 TEST_CASE("CIE 171, 5.8: light that a closed room reflects to and fro") {
-  // A cube of 4 m, all of one reflectance, a point in its middle. By symmetry each face gets a
-  // sixth of the flux, and each sixth of a face as much.
+  // A cube of 4 m with one reflectance and a point light in its middle. By symmetry each face gets
+  // a sixth of the flux, and each sixth of a face an equal part.
   constexpr double candela = 800;
   const Vec3d x{4, 0, 0}, y{0, 4, 0}, z{0, 0, 4};
   const std::vector<Rectangle> faces{{{-2, -2, 0}, x, y}, {{-2, -2, 4}, x, y}, {{-2, -2, 0}, x, z},
@@ -265,8 +265,8 @@ struct SkyCase {
   std::string number, what;
   Room room;
   double ground = 0;
-  double overhang = 0;     // of a black roof over the opening's upper edge, metres
-  double obstruction = 0;  // distance of a black wall of 4 m before the façade
+  double overhang = 0;     // depth of a black roof over the opening's upper edge, m
+  double obstruction = 0;  // distance of a black wall of 4 m from the façade, m
   bool is_glazed = false;
 };
 
@@ -275,7 +275,7 @@ std::vector<Point> facade_points() {
           {{0, 2, 1.2}, {0, -1, 0}}, {{2, 0, .7}, {-1, 0, 0}}, {{.5, -.5, 3}, down}};
 }
 
-// The rectangles that stand before the opening, 1 km wide.
+// Returns the rectangles in front of the opening, 1 km wide.
 std::vector<Rectangle> outside(const SkyCase& c) {
   std::vector<Rectangle> all;
   constexpr double wide = 500;
@@ -288,7 +288,7 @@ std::vector<Rectangle> outside(const SkyCase& c) {
 }
 
 double expected_at(const SkyCase& c, const Point& p, const Luminance& sky) {
-  // Heights in the opening, seen from p, of the edges of what stands outside.
+  // Heights of the edges of outside objects, projected from p onto the opening.
   const double inside = p.position.y + 2;
   const auto height_at_opening = [&](double distance, double z) {
     return p.position.z + (z - p.position.z) * inside / (inside + distance);

@@ -1,4 +1,4 @@
-// The four commands and what they print, write and promise.
+// The four commands: what they print and write, and what they guarantee.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ double mean(const Image& image) {
   return sum / double(3 * image.pixels.size());
 }
 
-// Runs and expects silence and success.
+// Runs the program and expects success without remarks.
 Finished run_well(const Folder& folder, const std::vector<std::string>& arguments) {
   Finished f = run_program(folder, arguments);
   CAPTURE(f.err);
@@ -29,8 +29,8 @@ Finished run_well(const Folder& folder, const std::vector<std::string>& argument
   return f;
 }
 
-// Irradiance under the middle of lit_floor_pbrt's source, times pi / L: four form factors of a
-// rectangle a × a over its corner at height h (parallel planes).
+// Returns the irradiance under the middle of lit_floor_pbrt's source, times π / L: four form
+// factors of a rectangle a × a over its corner at height h (parallel planes).
 double floor_irradiance() {
   const double a = 0.25, r = std::sqrt(1 + a * a);
   return 4 * 5 * (a / r * std::atan(a / r));
@@ -126,7 +126,7 @@ TEST_CASE("--stats holds every key") {
 
 TEST_CASE("--stats counts the viewing rays that the picture took, and no others") {
   const Folder folder;
-  // Nothing but one radiance to be seen, so that no pixel is refined.
+  // The picture shows a single radiance, so no pixel is refined.
   const std::string scene = folder.write("lamp.pbrt", R"(LookAt 0 0 0  0 0 1  0 1 0
 Camera "perspective" "float fov" [40]
 WorldBegin
@@ -263,7 +263,7 @@ TEST_CASE("measure: the header, the values, the errors") {
     const double e = floor_irradiance();
     CHECK(rows[0][6] == doctest::Approx(e).epsilon(0.01));
     CHECK(rows[0][9] == doctest::Approx(179 * e).epsilon(0.01));
-    // The text has seven digits; certified has no noise where nothing is in the way.
+    // The output has seven digits; certified has no noise without occluders.
     CHECK(std::abs(rows[0][9] - 179 * e) < 5 * rows[0][10] + 1e-6 * rows[0][9]);
     CHECK(rows[1][9] == 0);
     run_well(folder, {"measure", scene, "--points", points, "--method", method, "--indirect",
@@ -336,9 +336,10 @@ TEST_CASE("render and measure take certified visibility by default") {
   CHECK(of_plain["spp"] == 4);
   CHECK(of_plain["max_spp"] == 2048);
   CHECK(of_plain["lit_certified"].get<int>() > 40 * 30);
-  // Proofs, but for rays that are drawn with thrift along the edges.
+  // Nearly all visibility is proved. Rays are cast only along the edges, where the sampling effort
+  // is low.
   CHECK(of_plain["shadow_rays"].get<int>() < of_plain["viewing_rays"].get<int>() / 20);
-  // Refined at the edges of floor and lamp, and by less elsewhere.
+  // Samples concentrate on the edges of floor and lamp.
   CHECK(of_plain["viewing_rays"].get<int>() > 40 * 30 * 4);
   CHECK(of_plain["viewing_rays"].get<int>() < 40 * 30 * 32);
   CHECK(plain == render({"--method", "certified", "--spp", "4"}));

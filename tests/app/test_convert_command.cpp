@@ -1,6 +1,6 @@
-// What troffer convert and bake write gives the light of what they read. Expected values: the share
-// of light that passes a sheet of alpha a is 1 - a (glTF 2.0 §3.9.4, pbrt-v4 file format "alpha",
-// Mitsuba 3 "mask"); other files are held against what they were made from.
+// Files of `troffer convert` and `bake` give the same light as their inputs. Expected values: a
+// sheet of alpha a transmits the share 1 - a (glTF 2.0 §3.9.4, pbrt-v4 file format "alpha", Mitsuba
+// 3 "mask"). Other files are compared with what they were made from.
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 
@@ -56,7 +56,7 @@ void check_near(const std::vector<double>& is, const std::vector<double>& wanted
     CHECK(std::abs(is[i] - wanted[i]) <= most * std::abs(wanted[i]) + 1e-6);
 }
 
-// A grey TGA, row 0 on top.
+// A grey TGA, with row 0 at the top.
 std::string tga(int width, int height, const std::vector<uint8_t>& texels) {
   std::string out(18, '\0');
   out[2] = 3;
@@ -69,8 +69,8 @@ std::string tga(int width, int height, const std::vector<uint8_t>& texels) {
 
 const std::string below = "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n";
 
-// A lamp of 1 × 1 m, 2 m above the point, and a sheet between; `sheet`: directives before its shape
-// and parameters of it.
+// A lamp of 1 × 1 m, 2 m above the point, and a sheet between them. before: directives before its
+// shape; parameters: of the shape.
 std::string sheet_pbrt(const std::string& before, const std::string& parameters) {
   return "WorldBegin\nAttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\n"
          "Shape \"trianglemesh\" \"point3 P\" [-.5 -.5 2 -.5 .5 2 .5 .5 2 .5 -.5 2] \"integer "
@@ -117,7 +117,7 @@ TEST_CASE(
 TEST_CASE("opacity of pbrt, OBJ and Mitsuba survives in every format") {
   const Folder folder;
   const std::string points = folder.write("p.csv", below);
-  folder.write("a.tga", tga(2, 2, {51, 51, 51, 51}));  // .2
+  folder.write("a.tga", tga(2, 2, {51, 51, 51, 51}));  // alpha .2
   folder.write("s.mtl",
                "newmtl lamp\nKd 0 0 0\nKe 1 1 1\nnewmtl sheet\nKd .5 .5 .5\nmap_d a.tga\n");
   const std::string texture =
@@ -232,7 +232,7 @@ TEST_CASE("a convert that fails or is killed leaves the old file with its old da
   const auto before = files();
   REQUIRE(before.size() == 2);
   const std::string other = scene(2);
-  // No room for the text, which is longer than some bytes; data may be.
+  // The limit is too small for the text; some data files may fit.
   Running limited(folder, {"convert", other, folder.path("out.gltf"), "--quiet"}, [] {
     const rlimit most{4096, 4096};
     setrlimit(RLIMIT_FSIZE, &most);
@@ -250,7 +250,7 @@ TEST_CASE("a convert that fails or is killed leaves the old file with its old da
       scene(2);
       continue;
     }
-    // The old file has all of its old data; what is new beside it nobody names.
+    // The old file keeps all of its old data; new data files are not referenced.
     const auto now = files();
     if (now.at("out.gltf") == before.at("out.gltf"))
       for (const auto& [name, bytes] : before) CHECK(now.at(name) == bytes);

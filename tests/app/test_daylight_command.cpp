@@ -1,4 +1,4 @@
-// Light from beyond a scene, by options; scenes without light or camera.
+// Options for skies, suns and environment images; scenes without light or camera.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ const char* const plain_obj =
     "v -.5 -.5 .1\nv .5 -.5 .1\nv .5 .5 .1\nv -.5 .5 .1\nf 5 6 7 8\n";
 const char* const one_point = "x,y,z,nx,ny,nz\n2,2,0,0,0,1\n";
 
-// At the only point.
+// Measures at the single point.
 Measured measure(const Folder& folder, std::vector<std::string> options) {
   std::vector<std::string> words{"measure", folder.write("plain.obj", plain_obj), "--points",
                                  folder.write("p.csv", one_point)};
@@ -67,7 +67,7 @@ TEST_CASE("skies and suns bring to an open plain what is asked for") {
       {{"--sky", "cie:4,7000", "--sun", "90,40"}, 7000},
       {{"--sky", "clear,9000", "--sun", "200,30,50000"}, 9000 + 25'000},
       {{"--sky", "none", "--sun", "200,30,50000"}, 25'000},
-      // At noon of an equinox on the equator: the sun near the zenith, by the documented formula.
+      // Noon of an equinox at the equator: the sun near the zenith, by the documented formula.
       {{"--at", "0,0,2026-03-20T12:08Z"},
        800 + 15'500 + 127'500 / std::pow(0.99599, 2) * std::exp(-0.21)},
   };
@@ -83,7 +83,7 @@ TEST_CASE("skies and suns bring to an open plain what is asked for") {
 
 TEST_CASE("an image of the surroundings: scale, rotation, and what cannot be read") {
   const Folder folder;
-  // Bright in the east: the middle of the image, at the height of 45 degrees.
+  // Bright in the east: the middle of the image, at a height of 45 degrees.
   std::string pfm = "PF\n8 4\n-1\n";
   for (int y = 3; y >= 0; --y)
     for (int x = 0; x < 8; ++x) {
@@ -110,7 +110,7 @@ TEST_CASE("an image of the surroundings: scale, rotation, and what cannot be rea
     REQUIRE(f.status == 0);
     return f.out;
   };
-  // Turned by 90 degrees clockwise, east has become south.
+  // A clockwise turn by 90 degrees moves east to south.
   const auto column = [](const std::string& out, int row) {
     std::istringstream lines(out);
     std::string line;
@@ -199,7 +199,7 @@ TEST_CASE("a scene without light and camera is lit, framed and exposed, and says
   CHECK(contains(none.err, "the picture is black"));
   for (const Rgb& p : read_image(png).pixels) REQUIRE(p.is_black());
 
-  // After sunset.
+  // after sunset
   std::vector<std::string> night = plain;
   night.insert(night.end(), {"--at", "48,16,2026-06-21T23:00Z"});
   CHECK(contains(run_program(folder, night).err, "below the horizon"));
@@ -232,7 +232,7 @@ TEST_CASE("warnings tell of a hidden sun and of options without effect, and of n
 
 TEST_CASE("kj92 tells of the sky that it misses through openings, and of no other") {
   const Folder folder;
-  // A box without a wall, seen from within.
+  // A box with one open side, seen from inside.
   const std::string room = folder.write(
       "room.obj",
       "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\nv 0 0 2.5\nv 4 0 2.5\nv 4 3 2.5\nv 0 3 2.5\n"
@@ -344,7 +344,7 @@ TEST_CASE("an hour of a weather file is Perez' sky with the sun of that place an
     words.insert(words.end(), options.begin(), options.end());
     return run_program(folder, words).status;
   };
-  // By a moment anywhere: the file's hour, the place's sun.
+  // A moment in any time zone yields the file's hour and the place's sun.
   const Measured by_moment =
       measure(folder, {"--weather", file, "--at", "48.2,16.4,2005-06-21T12:30+02:00"});
   CHECK(by_moment.lx == doctest::Approx(by_file.lx).epsilon(1e-6));
@@ -353,7 +353,7 @@ TEST_CASE("an hour of a weather file is Perez' sky with the sun of that place an
   CHECK(status({"--weather", file, "--at", "48.2,16.4,2024-06-22T11:30Z"}) == 1);
   CHECK(status({"--weather", file, "--at", "48.2,16.4,2024-06-21T09:30Z", "--date",
                 "06-21T10:30"}) == 2);
-  CHECK(status({"--weather", file, "--date", "06-21T02:00"}) == 0);  // night: dark, and told
+  CHECK(status({"--weather", file, "--date", "06-21T02:00"}) == 0);  // night: dark, with a message
   CHECK(status({"--weather", file, "--date", "06-21T12:30"}) == 1);  // missing
   CHECK(status({"--weather", file, "--date", "07-21T12:30"}) == 1);
   CHECK(status({"--weather", file, "--date", "noon"}) == 2);

@@ -1,4 +1,4 @@
-// What goes wrong ends with one line, the right status and no file left behind.
+// Failures print one line, return the right status and leave no file behind.
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -13,7 +13,7 @@ using namespace troffer::test;
 
 namespace {
 
-// Exactly one line on standard error, `error: …`, and nothing on standard output.
+// Expects exactly one line on standard error, `error: …`, and nothing on standard output.
 void check_error(const Finished& f, int status, const std::string& pattern = ".*") {
   CAPTURE(f.err);
   CHECK(f.status == status);
@@ -71,7 +71,7 @@ TEST_CASE("files that are not there, and folders in place of files") {
   check_error(run_program(folder, {"info", folder.write("scene.xyz", "?")}), 1);
   std::filesystem::create_directory(folder.path("folder.pbrt"));
   check_error(run_program(folder, {"render", folder.path("folder.pbrt"), "-o", out}), 1);
-  // A pipe would keep the program waiting for ever.
+  // Opening a pipe would block forever.
   REQUIRE(mkfifo(folder.path("pipe.obj").c_str(), 0600) == 0);
   check_error(run_program(folder, {"render", folder.path("pipe.obj"), "-o", out}), 1);
   check_error(run_program(folder, {"compare", folder.path("a.exr"), folder.path("b.exr")}), 1);
@@ -85,7 +85,7 @@ TEST_CASE("outputs that cannot be written are told before any work, and leave no
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   std::filesystem::create_directory(folder.path("taken.png"));
   const auto before = folder.names();
-  // So many samples that the test would not end if they were taken.
+  // With so many samples the test would time out if rendering began.
   const auto render_to = [&](const std::vector<std::string>& outputs) {
     std::vector<std::string> arguments{"render", scene, "--spp", "1000000"};
     for (const std::string& o : outputs) arguments.insert(arguments.end(), {"-o", o});
@@ -121,7 +121,7 @@ TEST_CASE("a full disk") {
 }
 
 TEST_CASE("a folder in which nothing may be written") {
-  if (geteuid() == 0) return;  // root may
+  if (geteuid() == 0) return;  // root can write anywhere
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   std::filesystem::create_directory(folder.path("locked"));

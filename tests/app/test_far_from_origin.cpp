@@ -1,5 +1,5 @@
-// A scene, and the same scene kilometres from its file's origin, where a float is half a
-// millimetre wide: the same pictures and figures, in the file's coordinates.
+// A scene, and the same scene kilometres from its file's origin, where floats are spaced half a
+// millimetre: the same pictures and figures, in the file's coordinates.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -18,7 +18,8 @@ using Json = nlohmann::json;
 
 namespace {
 
-// A floor of 6 × 6 m; 12 mm under a light of 1 × 1 m, 2.5 m up, a plate that hides its middle.
+// A floor of 6 × 6 m, and a light of 1 × 1 m, 2.5 m up, with a plate 12 mm below that hides its
+// middle.
 struct Square {
   double half, height;
   bool is_light;
@@ -61,7 +62,7 @@ std::string obj_scene(const Folder& folder, const Vec3d& offset) {
   return folder.write("scene.obj", text);
 }
 
-// Squares from (0,0) to (1,1), moved and scaled by their nodes; the light's turned over.
+// Unit squares, moved and scaled by their nodes; the light is flipped.
 std::string gltf_scene(const Folder& folder, const Vec3d& offset) {
   std::string nodes;
   for (const Square& s : squares) {
@@ -89,7 +90,7 @@ Finished run_well(const Folder& folder, const std::vector<std::string>& argument
   return f;
 }
 
-// Where the pixels' first surfaces are.
+// Returns the positions of first hits.
 Image positions(const std::string& file) {
   const PreparedScene scene(import_scene(file));
   RenderOptions options;
@@ -103,7 +104,7 @@ Image positions(const std::string& file) {
   return render(scene, scene.scene.cameras.at(0), options, {}, never).layers.at(1).image;
 }
 
-// An OBJ has no camera; its view is given in the file's coordinates.
+// An OBJ has no camera; its view is given on the command line in the file's coordinates.
 Image picture(const Folder& folder, MakeScene make, const Vec3d& offset, const std::string& method,
               const std::vector<std::string>& more = {}) {
   std::vector<std::string> arguments{"render",
@@ -164,7 +165,7 @@ TEST_CASE("the position AOV and info's bounds are in the file's coordinates") {
   const Vec3d offset{10000, -5000, 5000};
   for (const MakeScene make :
        {MakeScene(pbrt_scene), MakeScene(gltf_scene), MakeScene(obj_scene)}) {
-    if (make != obj_scene) {  // which has no camera
+    if (make != obj_scene) {  // an OBJ has no camera
       const Image near = positions(make(folder, {})), far = positions(make(folder, offset));
       size_t off = 0, seen = 0;
       for (size_t i = 0; i < near.pixels.size(); ++i) {
@@ -199,7 +200,7 @@ TEST_CASE("measured points are the file's, and are repeated as given") {
     const std::string out = run_well(folder, {"measure", pbrt_scene(folder, offset), "--points",
                                               file, "--method", "fixed", "--spp", "64"})
                                 .out;
-    // As given: each line begins with what the file of points has there.
+    // Coordinates appear as given: each line begins with the text of the points file.
     std::vector<std::string> values;
     size_t at = points.find('\n') + 1, line = out.find('\n') + 1;
     for (int i = 0; i < 3; ++i) {

@@ -1,6 +1,6 @@
-// Skies and suns where numbers are awkward: through a pane and slats, in rooms of a millimetre and
-// of kilometres, far from the origin, with the sun at the horizon and in a wall's plane, and by
-// images of which one pixel has all light.
+// Skies and suns in difficult geometry: through a pane and slats, in rooms of a millimetre and of
+// kilometres, far from the origin, with the sun at the horizon and in a wall's plane, and by images
+// with all light in one pixel.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ using namespace troffer::test;
 
 namespace {
 
-// Scaled, then moved.
+// Scales, then moves.
 struct Place {
   double scale = 1;
   std::array<double, 3> shift{0, 0, 0};
@@ -48,7 +48,8 @@ std::string box(const Place& p, const Corner& a, const Corner& b) {
   return s;
 }
 
-// Thick walls, a glazed window in the one at x = 5, twenty slats before it, shelves of books.
+// Thick walls, a glazed window in the wall at x = 5 with twenty slats outside, and shelves with
+// books.
 std::string room(const Place& p) {
   std::string s = "WorldBegin\nMaterial \"diffuse\" \"rgb reflectance\" [.6 .6 .6]\n";
   s += box(p, {-.2, -.2, -.2}, {5.2, 4.2, 0}) + box(p, {-.2, -.2, 2.7}, {5.2, 4.2, 2.9});
@@ -90,7 +91,7 @@ std::vector<std::string> with(std::vector<std::string> options, std::vector<std:
   return options;
 }
 
-// share: of the light, that methods may differ by beyond their errors.
+// share: relative difference between methods that is allowed beyond their errors.
 void check_agreement(const std::vector<std::string>& light, const Place& place = {},
                      double share = 3e-3) {
   const auto proved = measure(place, light);
@@ -129,19 +130,20 @@ TEST_CASE("the same room of any size and far away, by any number of threads") {
             2e-3 * here[i].lx + 5 * (there[i].error + here[i].error));
     }
   }
-  // Points start farther off there, which moves the slats' stripes: by all methods alike.
+  // There points start further off the surface, which moves the slats' shadows, for all methods
+  // alike.
   check_agreement(light, {1, {10240, -10240, 0}});
 }
 
 TEST_CASE("an image with all its light in one pixel sends it through the window") {
   const Folder folder;
-  // East is in the middle of a row; 30 degrees high.
+  // East is in the middle of a row; the pixel is 30 degrees high.
   std::string pfm = "PF\n128 64\n-1\n";
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 128; ++x) {
       const float v = x == 63 && y == 42 ? 1e6f : 10.0f;
       for (int c = 0; c < 3; ++c) pfm.append(reinterpret_cast<const char*>(&v), sizeof v);
     }
-  // By a slat's shadow .5 % are missing of what paths find, of which the told errors know nothing.
+  // A slat's shadow hides .5 % of what paths find, and the estimated errors do not include it.
   check_agreement({"--environment", folder.write("hot.pfm", pfm)}, {}, 4e-3);
 }

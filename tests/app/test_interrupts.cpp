@@ -1,4 +1,4 @@
-// Signals, and programs that run side by side.
+// Signals, and programs that run at the same time.
 #include <doctest/doctest.h>
 #include <signal.h>
 
@@ -43,7 +43,7 @@ TEST_CASE("a signal stops measuring, within one point too") {
   const Finished f = program.wait();
   CHECK(f.status == 130);
   CHECK(f.seconds_after_signal < 5);
-  // Of no point there is a value.
+  // No point has a value.
   CHECK(f.err == "interrupted after 0 of 2 points: nothing was written\n");
   CHECK(folder.names() == std::vector<std::string>{"p.csv", "room.pbrt"});
 }

@@ -1,6 +1,7 @@
-// kill -9 at any moment: the last checkpoint and the old output are whole, and what goes on from
-// there ends in the bytes of an uninterrupted run. TROFFER_KILLS=200 test_app
-// --source-file='*/test_kills.cpp' does so 200 times; by itself the test does fewer.
+// kill -9 at any moment: the last checkpoint and the old output stay intact, and the resumed run
+// ends with the bytes of an uninterrupted one.
+// TROFFER_KILLS=200 test_app --source-file='*/test_kills.cpp' kills 200 times; by default there are
+// fewer.
 #include <doctest/doctest.h>
 #include <signal.h>
 
@@ -18,7 +19,7 @@ struct Killed {
   int kills = 0, kept = 0, finished = 0;
 };
 
-// Kills the program until it has been killed so often, and lets it end.
+// Kills the program repeatedly, then lets it end.
 void kill_again_and_again(const std::vector<std::string>& options, int kills, std::mt19937& random,
                           Killed& all) {
   const Folder folder;
@@ -48,7 +49,7 @@ void kill_again_and_again(const std::vector<std::string>& options, int kills, st
       ++all.kills;
       continue;
     }
-    // It had done before: with a sound checkpoint, and to the right end.
+    // It had ended before the kill, with a valid checkpoint and the right result.
     CHECK(f.status == 0);
     CHECK(now == wanted);
     ++all.finished;

@@ -1,4 +1,4 @@
-// render and measure --method kj92: options, files, ends.
+// `render` and `measure` with --method kj92: options, files, exit statuses.
 #include <doctest/doctest.h>
 
 #include <signal.h>
@@ -14,7 +14,7 @@ using namespace troffer::test;
 
 namespace {
 
-// The number behind "name": in a JSON file; -1 where there is none.
+// Returns the number after "name": in a JSON file; -1 if missing.
 double number_in(const std::string& json, const std::string& name) {
   const size_t at = json.find("\"" + name + "\":");
   return at == std::string::npos ? -1 : std::stod(json.substr(at + name.size() + 3));
@@ -94,7 +94,7 @@ TEST_CASE("kj92: wrong values are usage errors, in one line") {
     CHECK(f.err.rfind("error: ", 0) == 0);
   }
   CHECK(folder.names() == std::vector<std::string>{"room.pbrt"});
-  // What belongs to this method alone.
+  // Options that other methods refuse.
   for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
            {"--solution", scene}, {"--indirect", "radiosity"}, {"--shadow-rays", "0"}}) {
     const Finished f = run_program(folder, {"render", scene, "-o", folder.path("o.exr"), "--method",
@@ -121,7 +121,7 @@ TEST_CASE("kj92: a solution that is not this scene's is refused in one line") {
     CHECK(f.err.rfind("error: ", 0) == 0);
   }
   for (const std::string& n : folder.names()) CHECK(n != "o.exr");
-  // Of the same scene it is taken, and gives the same picture as computing it on the way.
+  // A solution of the same scene is accepted and gives the same picture as computing it.
   CHECK(run_program(folder, render_of(folder, other, {"--solution", file})).status == 0);
   const Image loaded = read_image(folder.path("o.exr"));
   CHECK(run_program(folder, render_of(folder, other, {})).status == 0);
@@ -168,7 +168,7 @@ TEST_CASE("kj92: SIGINT during rendering leaves a picture, during radiosity noth
           folder.write("room.pbrt", is_during_radiosity ? bright_room_pbrt() : lit_floor_pbrt);
       std::vector<std::string> options{"--threads", "1", "--stats", folder.path("s.json")};
       if (is_during_radiosity) {
-        // Light goes to and fro between walls of 95 %; a loaded machine only makes it slower.
+        // Walls of 95 % make the solution slow; a loaded machine only makes it slower.
         options.insert(options.end(), {"--size", "40x30", "--spp", "100000"});
       } else {
         options.insert(options.end(), {"--spp", "1000000"});

@@ -1,4 +1,4 @@
-// Renderings that last: time limits, checkpoints, shares; as users call them.
+// Time limits, checkpoints and parts, as users call them.
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -35,7 +35,7 @@ size_t black_pixels(const Image& image) {
                               [](const Rgb& p) { return p.is_black(); }));
 }
 
-// One line, and no output.
+// Expects one error line and no output.
 void check_refused(const Finished& f, int status, const std::string& part) {
   CAPTURE(f.err);
   CHECK(f.status == status);
@@ -60,7 +60,7 @@ TEST_CASE("a time limit ends a render with a whole picture, says so, and is no f
     CHECK(contains(read_file(folder.path("s.json")), "\"ended_by\": \"time_limit\""));
     const LayeredImage image = read_layers(folder.path("o.exr"));
     CHECK(black_pixels(image.layers[0].image) == 0);
-    CHECK(black_pixels(image.layers[1].image) < 40 * 30 / 20);  // all have an error
+    CHECK(black_pixels(image.layers[1].image) < 40 * 30 / 20);  // all pixels have an error
     CHECK(folder.names() == Words{"o.exr", "room.pbrt", "s.json"});
   }
 }
@@ -87,7 +87,7 @@ TEST_CASE("stopped, and gone on with: the bytes of an uninterrupted run") {
       CAPTURE(f.err);
       CHECK(f.status == 0);
       CHECK(read_file(folder.path("o.exr")) == read_file(folder.path("whole.exr")));
-      // What is done leaves nothing.
+      // A finished rendering removes its checkpoint.
       CHECK(folder.names() == Words{"o.exr", "room.pbrt", "whole.exr"});
     }
 }
@@ -191,7 +191,7 @@ TEST_CASE("shares that do not make up a picture are refused, by a line each") {
   CHECK(merge({b, a}).status == 0);
   CHECK(read_file(out) == read_file(none));
 
-  // Broken off.
+  // An interrupted part.
   std::filesystem::remove(b);
   Running program(folder, {"render", scene, "--method", "fixed", "--quiet", "-o", b, "--part",
                            "2/2", "--spp", "1000000", "--threads", "1"});

@@ -1,4 +1,4 @@
-// Lights by name: wildcards of --luminaire, --dim; grids over a node; and what surfaces emit.
+// Lights by name: wildcards of --luminaire and --dim, grids over a node, and emission of surfaces.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -24,8 +24,8 @@ bool contains(const std::string& text, const std::string& part) {
 const char* const point_ies =
     "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 40\n0 90\n0\n100 100\n";
 
-// Points of 10, 20 and 30 cd, 2 m above a floor of 4 x 2 m (y up), called lamp.1, lamp.2 and spare;
-// and a panel of half a square metre at 5 cd/m².
+// Point lights of 10, 20 and 30 cd, 2 m above a floor of 4 × 2 m (y up), named lamp.1, lamp.2 and
+// spare; and a panel of half a square metre with 5 cd/m².
 std::string gltf() {
   std::string lights, nodes;
   int n = 0;
@@ -36,7 +36,7 @@ std::string gltf() {
         name, 1 + n, n);
     lights += fmt::format("{}{{\"type\":\"point\",\"intensity\":{}}}", n++ > 0 ? "," : "", candela);
   }
-  // Corners 0,0,0 and 4,0,0 and 0,0,2 and 4,0,2 of the floor, as floats.
+  // Corners of the floor as floats: 0,0,0 and 4,0,0 and 0,0,2 and 4,0,2.
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2,3,4]}],
 "extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":{"lights":[)" +
          lights + R"(]}},"nodes":[{"mesh":0,"name":"floor"})" + nodes +
@@ -55,7 +55,7 @@ struct NamesTest {
   Folder folder;
   std::string scene = folder.write("lamps.gltf", gltf());
   std::string lamp = folder.write("lamp.ies", point_ies);
-  // Under each of the lamps.
+  // One point below each lamp.
   std::string points =
       folder.write("p.csv", "x,y,z,nx,ny,nz\n1,0,1,0,1,0\n2,0,1,0,1,0\n3,0,1,0,1,0\n");
 
@@ -64,7 +64,7 @@ struct NamesTest {
     words.insert(words.end(), more.begin(), more.end());
     return run_program(folder, words);
   }
-  // By the lights alone that are named.
+  // Measures with the named lights alone.
   std::vector<Measured> lx(const std::string& light, const std::vector<std::string>& more) {
     std::vector<std::string> words = more;
     words.insert(words.end(), {"--light", light});
@@ -89,7 +89,7 @@ TEST_CASE("--luminaire takes a wildcard: each light that fits it shines by the f
   const Finished none = t.run({"--luminaire", "desk*=" + t.lamp});
   CHECK(none.status == 2);
   CHECK(contains(none.err, "no name fits 'desk*'"));
-  // Surfaces that shine not yet.
+  // Surfaces that do not emit yet.
   CHECK(t.run({"--luminaire", "flo*=" + t.lamp}).status == 0);
 }
 
@@ -100,10 +100,10 @@ TEST_CASE("--dim scales the light of what it names") {
   CHECK(t.lx("lamp.1", {"--dim", "lamp.1=.25"})[0].lx == doctest::Approx(whole / 4).epsilon(1e-5));
   CHECK(t.lx("lamp.1", {"--dim", "lamp*=2"})[0].lx == doctest::Approx(2 * whole).epsilon(1e-5));
   CHECK(t.lx("lamp.1", {"--dim", "lamp.2=2"})[0].lx == doctest::Approx(whole));
-  // Of several the last.
+  // The last of several requests counts.
   CHECK(t.lx("lamp.1", {"--dim", "lamp*=2", "--dim", "lamp.1=3"})[0].lx ==
         doctest::Approx(3 * whole).epsilon(1e-5));
-  // One that is out, by every method.
+  // Lights that are off, by every method.
   for (const char* method : {"certified", "path", "fixed", "kj92"}) {
     const Finished f = t.run({"--dim", "lamp.2=0", "--dim", "spare=0", "--dim", "panel=0",
                               "--method", method, "--spp", "64"});
@@ -112,7 +112,7 @@ TEST_CASE("--dim scales the light of what it names") {
     REQUIRE(f.status == 0);
     CHECK(measured(f)[0].lx == doctest::Approx(whole).epsilon(0.01));
   }
-  // Daylight and measured luminaires too.
+  // Daylight and measured luminaires can be dimmed, too.
   const double sky = t.lx("sky", {"--sky", "even,1000"})[0].lx;
   CHECK(t.lx("sky", {"--sky", "even,1000", "--dim", "sky=.1"})[0].lx ==
         doctest::Approx(sky / 10).epsilon(1e-4));
@@ -176,7 +176,7 @@ TEST_CASE("--grid lays points over a node's upward surface") {
     }
     return points;
   };
-  // Half a metre apart: 8 x 4 cells of the floor of 4 x 2 m.
+  // Half a metre apart: 8 × 4 cells of the floor of 4 × 2 m.
   const auto half = rows({"--grid", "floor,0.75,0.5"});
   REQUIRE(half.size() == 32);
   for (const auto& p : half) {
@@ -185,8 +185,8 @@ TEST_CASE("--grid lays points over a node's upward surface") {
     CHECK(std::abs(std::remainder(p[2] - 0.25, 0.5)) < 1e-6);
     CHECK(p[4] == doctest::Approx(1));
   }
-  // EN 12464-1, 4.4: the longer side is twice the shorter one, so d = 2 m, p = .2 * 5^lg 2 = .325
-  // m: seven cells along it, fourteen along the other.
+  // EN 12464-1, 4.4: the longer side is twice the shorter one, so d = 2 m and p = .2 * 5^lg 2 =
+  // .325 m: seven cells along d, fourteen along the other side.
   CHECK(rows({"--grid", "floor"}).size() == 98);
   CHECK(rows({"--grid", "floor"})[0][1] == doctest::Approx(0));
   for (const auto& p : rows({"--grid", "floor,0.75,0.5", "--border", "0.5"})) {
@@ -195,7 +195,7 @@ TEST_CASE("--grid lays points over a node's upward surface") {
     CHECK(p[2] > 0.5);
     CHECK(p[2] < 1.5);
   }
-  // With a list, whose points come first.
+  // Together with a list, whose points come first.
   const Finished both = run_program(
       t.folder, {"measure", t.scene, "--indirect", "none", "--spp", "16", "--points",
                  t.folder.write("n.csv", "x,y,z,nx,ny,nz\n1,0,1,0,1,0\n"), "--grid", "floor,0,2"});
@@ -210,8 +210,8 @@ TEST_CASE("--grid lays points over a node's upward surface") {
 // glTF-Blender-IO writes emission strength without a factor, and lamps with 683 lm/W.
 TEST_CASE("surfaces that are dim beside lamps are told, and scaled where it is asked") {
   NamesTest t;
-  // 18 lamps' worth: 4 pi (10 + 20 + 30) = 754 lm, beside .5 m² of 5 cd/m², 7.9 lm to one side.
-  CHECK_FALSE(contains(t.run({}).err, "--emission-scale"));  // more than a hundredth
+  // The lamps emit 4 π (10 + 20 + 30) = 754 lm, the panel of .5 m² with 5 cd/m² 7.9 lm to one side.
+  CHECK_FALSE(contains(t.run({}).err, "--emission-scale"));  // more than a hundredth of the lamps
   std::string strong = gltf();
   strong.replace(strong.find("\"intensity\":30"), 14, "\"intensity\":3000");
   const std::string scene = t.folder.write("strong.gltf", strong);

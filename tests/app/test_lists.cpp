@@ -1,4 +1,4 @@
-// The tables of points, luminaires and surfaces: one reader, whatever a spreadsheet writes.
+// Tables of points, luminaires and surfaces: one reader accepts whatever a spreadsheet writes.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-// Of the first point; columns of a list's own may follow.
+// Returns the illuminance of the first point; columns of the list may follow it.
 double lx_of(const std::string& csv) {
   std::istringstream row(lines_of(csv).at(1));
   std::string field;
@@ -51,7 +51,7 @@ constexpr double expected = 100 / 6.25;  // lx, 2.5 m below a point of 100 cd
 
 }  // namespace
 
-// RFC 4180, and what spreadsheets make of it in countries with a decimal comma.
+// RFC 4180, and spreadsheets in countries with a decimal comma.
 TEST_CASE("lists of points and of luminaires take the same forms of a table") {
   ListsTest t;
   for (const std::string form :
@@ -93,7 +93,7 @@ TEST_CASE("lists of points and of luminaires take the same forms of a table") {
 
 TEST_CASE("columns that a list of points does not know are told and passed over") {
   ListsTest t;
-  // Results of another run are no exception.
+  // Results of another run are accepted, too.
   const Finished f = t.measure(
       "Room,x,y,z,nx,ny,nz,illuminance_lx\nA,1,2,0,0,0,1,7\n\"B, left\",1,2,0,0,0,1\n", plain_list);
   REQUIRE(f.status == 0);

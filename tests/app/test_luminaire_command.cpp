@@ -1,4 +1,4 @@
-// Measured luminaires, by the command line.
+// Measured luminaires on the command line.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ using namespace troffer::test;
 
 namespace {
 
-// Intensities 1000 cos^n cd, every degree from the nadir.
+// Intensities of 1000 cos^n cd, every degree from the nadir.
 std::string ies(int power) {
   std::string text = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 91 1 1 2 1 1 0\n1 1 25\n";
   for (int i = 0; i <= 90; ++i) text += fmt::format("{}\n", i);
@@ -25,7 +25,7 @@ std::string ies(int power) {
   return text;
 }
 
-// A panel of 1 m² at the height of 2 m, facing down, beside a floor.
+// The material of a panel of 1 m² at a height of 2 m, facing down (`geometry`).
 std::string panel_obj(double radiance) {
   return fmt::format("newmtl lit\nKd .5 .5 .5\nKe {0:.9g} {0:.9g} {0:.9g}\n", radiance);
 }
@@ -40,8 +40,8 @@ std::vector<Measured> measure(const Folder& folder, const std::vector<std::strin
 
 }  // namespace
 
-// The C planes' figure of CIE 121 and LM-63 (type C): a street luminaire throws towards C90, its
-// C0 to the right of that as seen from above: x and y on a map.
+// Figure of the C planes in CIE 121 and LM-63 (type C): a street luminaire emits toward C90. Its C0
+// is to the right of that, seen from above, like x and y on a map.
 TEST_CASE("C angles run counterclockwise seen from above: C90 lies to the left of C0") {
   const Folder folder;
   std::string ies = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 9 1 2 0 0 0\n1 1 25\n0 90\n";
@@ -98,7 +98,7 @@ TEST_CASE(
       CAPTURE(i);
       CHECK(std::abs(measured[i].lx - diffuse[i].lx) <
             1e-3 * diffuse[i].lx + 5 * measured[i].error);
-      // Points of 1 / n² of the intensity each.
+      // Sum over points with 1 / n² of the intensity each.
       std::getline(rows, row);
       double x = 0, y = 0, z = 0;
       REQUIRE(std::sscanf(row.c_str(), "%lf,%lf,%lf", &x, &y, &z) == 3);
@@ -107,7 +107,7 @@ TEST_CASE(
       for (int k = 0; k < n * n; ++k) {
         const double dx = (k % n + 0.5) / n - 0.5 - x, dy = (k / n + 0.5) / n - 0.5 - y, dz = 2 - z;
         const double d2 = dx * dx + dy * dy + dz * dz, cosine = dz / std::sqrt(d2);
-        // 3000 lm of I cos^5: 2 pi I / 6 of them.
+        // 3000 lm of I cos^5, whose flux is 2 π I / 6.
         sum += 3000 * 3 / pi * std::pow(cosine, 5) * cosine / d2 / (n * n);
       }
       CHECK(std::abs(sharp[i].lx - sum) < 3e-3 * sum + 5 * sharp[i].error);
@@ -258,7 +258,7 @@ TEST_CASE("polar curves are drawn; other files and endings are refused") {
   const std::string svg = read_file(folder.path("c.svg"));
   CHECK(svg.starts_with("<svg"));
   CHECK(svg.find("C90") != std::string::npos);
-  // 1000 cd at the nadir reach the outermost ring, 200 below the middle.
+  // 1000 cd at the nadir reach the outermost ring, 200 px below the middle.
   CHECK(svg.find("240.00,440.00") != std::string::npos);
   CHECK(read_file(folder.path("c.png")).starts_with("\x89PNG"));
   CHECK(run_program(folder, {"info", file, "--polar", folder.path("c.gif")}).status == 2);
@@ -285,5 +285,6 @@ TEST_CASE("points of a radius light what they lit, and their shadows are soft") 
   const auto hard = lit({}), soft = lit({"--light-radius", "0.2"});
   CHECK(hard[1].lx == doctest::Approx(10 * luminous_efficacy / 4).epsilon(1e-3));
   CHECK(soft[0].lx == doctest::Approx(hard[0].lx).epsilon(2e-3));
-  CHECK(soft[1].lx == doctest::Approx(hard[1].lx * .53).epsilon(.03));  // half of the sphere
+  // half of the sphere is visible
+  CHECK(soft[1].lx == doctest::Approx(hard[1].lx * .53).epsilon(.03));
 }

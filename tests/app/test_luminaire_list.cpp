@@ -1,4 +1,4 @@
-// Lists of luminaires as spreadsheets write them, what else is told of luminaires' files, and
+// Lists of luminaires as spreadsheets write them, other information about luminaire files, and
 // weather files with quotes and gaps.
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@ using namespace troffer::test;
 
 namespace {
 
-// An even point of 100 cd downwards, 200 pi lm.
+// A uniform point of 100 cd downward, 200 π lm.
 const char* const point_ies =
     "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 5\n0 90\n0\n100 100\n";
 
@@ -106,10 +106,10 @@ TEST_CASE(
   const char *below = "0 30 60 90 180", *even = "100 100 100 100 0";
   CHECK(info(with("1 -1", below, even))["warnings"].empty());
   CHECK(info(with("2 600", below, even))["warnings"].empty());
-  const auto wrong = info(with("1 600", below, even))["warnings"];  // it has some 1200
+  const auto wrong = info(with("1 600", below, even))["warnings"];  // it emits about 1200 lm
   REQUIRE(wrong.size() == 1);
   CHECK(contains(wrong[0].get<std::string>(), "600 lm"));
-  // A batwing: half of its largest intensity at 15 and 75 degrees; and the same upwards.
+  // A batwing: half of its largest intensity at 15 and 75 degrees. Then the same upward.
   const auto wings = info(with("1 -1", below, "0 100 100 0 0"));
   CHECK(wings["beam_angle"][0].get<double>() == doctest::Approx(150).epsilon(2e-3));
   CHECK(wings["field_angle"][1].get<double>() == doctest::Approx(174).epsilon(2e-3));

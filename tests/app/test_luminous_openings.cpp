@@ -1,4 +1,4 @@
-// Luminous openings of measured luminaires, by the command line.
+// Luminous openings of measured luminaires on the command line.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -17,10 +17,10 @@ using namespace troffer::test;
 
 namespace {
 
-// Points, and the normals there times the area that each stands for.
+// Points, each with its normal times the area that it stands for.
 using Surface = std::vector<std::pair<Vec3d, Vec3d>>;
 
-// Midpoints of n × n parts of a rectangle.
+// Adds the midpoints of n × n parts of a rectangle.
 void add_rectangle(const Vec3d& middle, const Vec3d& u, const Vec3d& v, int n, Surface& out) {
   for (int k = 0; k < n * n; ++k)
     out.emplace_back(middle + u * ((k % n + .5) / n - .5) + v * ((k / n + .5) / n - .5),
@@ -66,7 +66,7 @@ Surface disc_points(int n) {
   return p;
 }
 
-// 1000 (.4 + .6 cos²γ): a web that is smooth, and light in all directions.
+// 1000 (.4 + .6 cos²γ): a smooth web with light in all directions.
 double candela(double cosine) {
   return 1000 * (.4 + .6 * cosine * cosine);
 }
@@ -141,7 +141,7 @@ TEST_CASE("openings of every shape: the measured light far away, subdivided sums
 
 TEST_CASE("certified: measured openings half hidden are lit as rays have it") {
   const Folder folder;
-  // A box with sides, before which a board stands.
+  // A box with luminous sides, with a board in front of it.
   std::string text = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 181 3 1 2 0.6 1.2 0.1\n1 1 25\n";
   for (int i = 0; i <= 180; ++i) text += fmt::format("{}\n", i);
   text += "0\n45\n90\n";
@@ -173,7 +173,7 @@ TEST_CASE("certified: measured openings half hidden are lit as rays have it") {
   double chi2 = 0;
   int hidden = 0;
   for (size_t i = 0; i < proved.size(); ++i) {
-    // Rays' noise, masks', and a thousandth for what is told of their errors.
+    // Noise of rays and of masks, and a thousandth, since their errors are estimates.
     const double allowed = std::hypot(by_rays[i].error, proved[i].error) + 1e-3 * by_rays[i].lx;
     CAPTURE(i);
     CHECK(std::abs(proved[i].lx - by_rays[i].lx) <= 5 * allowed);
@@ -182,5 +182,5 @@ TEST_CASE("certified: measured openings half hidden are lit as rays have it") {
     hidden += by_rays[i].lx < .5 * by_rays[0].lx ? 1 : 0;
   }
   CHECK(chi2 < 1.5);
-  CHECK(hidden > 3);  // the board's shadow
+  CHECK(hidden > 3);  // points in the board's shadow
 }

@@ -1,4 +1,4 @@
-// What triangles cost.
+// Memory use by number of triangles.
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 
@@ -15,7 +15,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A bent and rough surface of 2 n² triangles, none of which lies in its neighbour's plane.
+// A bent and rough surface of 2 n² triangles, none of them coplanar with a neighbour.
 std::string rough_ply(int n) {
   std::string text =
       "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string((n + 1) * (n + 1)) +
@@ -86,7 +86,7 @@ TEST_CASE(
     folder.write("rough.ply", rough_ply(few));
     const double least = peak_mb(folder, scene);
     folder.write("rough.ply", rough_ply(n));
-    // What two threads hold at once depends on when they run: the least of three runs.
+    // Two threads' peak memory depends on timing: take the least of three runs.
     double peak = peak_mb(folder, scene);
     for (int i = 0; i < 2; ++i) peak = std::min(peak, peak_mb(folder, scene));
     const double per_triangle = (peak - least) * (1 << 20) / (2 * n * n);
@@ -97,7 +97,7 @@ TEST_CASE(
 }
 
 TEST_CASE("instances take no memory for their triangles, neither for rays nor for proofs") {
-  constexpr int n = 370, many = 100;  // so many triangles that the file's objects are shared
+  constexpr int n = 370, many = 100;  // enough triangles for the file's objects to be shared
   const Folder folder;
   folder.write("rough.ply", rough_ply(n));
   const auto scene_of = [&](int count) {
@@ -111,7 +111,7 @@ TEST_CASE("instances take no memory for their triangles, neither for rays nor fo
               " .3\nScale .1 .1 .3\nObjectInstance \"o\"\nAttributeEnd\n";
     return folder.write("s" + std::to_string(count) + ".pbrt", text);
   };
-  // Cells, which follow surfaces, are another matter.
+  // These options use no cells, whose number grows with the surfaces.
   for (const std::vector<std::string>& options :
        {std::vector<std::string>{"--error", ".1", "--indirect", "none"}, {"--method", "path"}}) {
     const double few = peak_mb(folder, scene_of(2), options);
@@ -123,7 +123,7 @@ TEST_CASE("instances take no memory for their triangles, neither for rays nor fo
   }
 }
 
-// What is reserved for large pages takes addresses.
+// Large pages reserve addresses.
 TEST_CASE("few addresses are enough") {
 #if !defined(__SANITIZE_ADDRESS__)
   const Folder folder;

@@ -1,5 +1,4 @@
-// Points and luminaires that stand outside of the room or within something are told; others are
-// not.
+// Warnings for points and luminaires outside of the room or inside an object, and none for others.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -17,8 +16,8 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != text.npos;
 }
 
-// A box whose faces look inward, or outward; corners from `a` to `b`, numbered after `first`
-// others.
+// A box whose faces look inward, or outward, with corners from `a` to `b`; its vertices follow
+// `first` others.
 std::string box(const std::array<double, 3>& a, const std::array<double, 3>& b, int first,
                 bool is_inward, bool has_lid = true) {
   std::string s;
@@ -45,7 +44,7 @@ struct PlaceTest {
   Folder folder;
   std::string point = folder.write("point.ies", point_ies);
   std::string panel = folder.write("panel.ies", panel_ies);
-  // 6 x 4 x 3 m, with a solid of a cubic metre that hangs in it.
+  // A room of 6 × 4 × 3 m, in which a solid of one cubic metre hangs.
   std::string room = folder.write(
       "room.obj", box({0, 0, 0}, {6, 4, 3}, 0, true) + box({1, 1, 0.2}, {2, 2, 1.2}, 8, false));
 
@@ -83,7 +82,7 @@ TEST_CASE("points outside of a closed room, and within bodies, are told by numbe
                  "2 points lie outside of the room (number 1, 2)"));
   CHECK(contains(t.warnings(t.room, lamp, "1.5,1.5,.7,0,0,1\n3,2,.75,0,0,1\n"),
                  "1 point lies within a body, where no light arrives (number 1)"));
-  // By daylight through nothing: outside there is light, and the points are told all the same.
+  // Daylight without walls: the outside is lit, and the points are reported all the same.
   CHECK(contains(t.warnings(t.room, "", "3,2,5,0,0,1\n", {"--sky", "overcast"}),
                  "1 point lies outside of the room (number 1)"));
   CHECK(t.warnings(t.room, lamp, "3,-2,1,0,0,1\n", {"--quiet"}).empty());
@@ -100,14 +99,14 @@ TEST_CASE("luminaires outside of a closed room, and within a ceiling, are told b
     CHECK(told(t.room, "1,3,2.9").empty());
     CHECK(contains(told(t.room, "3,2,3.9"), "1 luminaire lies outside of the room: luminaire1"));
     CHECK(contains(told(t.room, "3,2.5,-1"), "outside of the room: luminaire1"));
-    // A room within walls and a ceiling of half a metre.
+    // A room with walls and a ceiling half a metre thick.
     const std::string thick =
         t.folder.write("thick.obj", box({0, 0, 0}, {6, 4, 3}, 0, true) +
                                         box({-.5, -.5, -.5}, {6.5, 4.5, 3.5}, 8, false));
     CHECK(told(thick, "1,3,2.9").empty());
     CHECK(contains(told(thick, "3,2,3.9"), "outside of the room: luminaire1"));
     CHECK(contains(told(thick, "3,2,3.2"), "luminaire1"));
-    // In the solid.
+    // Inside the solid.
     CHECK(contains(told(t.room, "1.5,1.5,.7"),
                    "1 luminaire lies within a body, or behind a surface"));
   }
@@ -121,14 +120,14 @@ TEST_CASE("open scenes, and what only looks odd, are not told of") {
       t.folder.write("plane.obj", "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nf 1 2 3 4\n");
   const std::string open = t.folder.write("open.obj", box({0, 0, 0}, {6, 4, 3}, 0, true, false));
   const std::string block = t.folder.write("block.obj", box({0, 0, 0}, {6, 4, 3}, 0, false));
-  // Above a plane, above a room without a ceiling, around a block.
+  // Above a plane, above a room without a ceiling, next to a block.
   CHECK(t.warnings(plane, "point.ies,0,0,3\n", "0,0,0,0,0,1\n0,0,9,0,0,1\n20,0,0,0,0,1\n").empty());
   CHECK(t.warnings(open, "panel.ies,3,2,4\n", "3,2,0,0,0,1\n3,2,5,0,0,1\n").empty());
   CHECK(t.warnings(block, "point.ies,9,9,5\n", "3,2,3,0,0,1\n8,8,0,0,0,1\n").empty());
-  // Points that a beam does not reach, or that look away, in a room that has its lamp.
+  // Points that a beam does not reach, or that face away, in a room with a lamp.
   CHECK(t.warnings(t.room, "point.ies,3,2,1\n", "3,2,2,0,0,1\n3,2,0,0,0,-1\n").empty());
-  // Flush with the ceiling, and on the floor.
+  // Flush with the ceiling, and a point on the floor.
   CHECK(t.warnings(t.room, "panel.ies,3,2,3\n", "3,2,0,0,0,1\n").empty());
-  // A façade's point under the sky.
+  // A point on a façade under the sky.
   CHECK(t.warnings(plane, "", "0,0,2,0,1,0\n", {"--sky", "overcast"}).empty());
 }

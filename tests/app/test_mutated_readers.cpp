@@ -1,5 +1,5 @@
-// Files of the command line's own readers, changed at random: each is read whole or refused in a
-// line.
+// Random mutations of files for the command line's own readers: each is read entirely, or refused
+// with one line.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -50,7 +50,7 @@ TEST_CASE("three thousand mutated lists of luminaires are read whole or refused"
   });
 }
 
-// Their squares are lost, or have but a digit left: what is made of them is no unit vector.
+// Squares of such short vectors underflow or have one digit left, so they cannot be normalized.
 TEST_CASE("directions that are too short are refused") {
   const Folder folder;
   const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n1,2,3,0,0,3e-23\n");

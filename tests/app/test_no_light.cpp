@@ -1,4 +1,4 @@
-// A sky that nobody asked for lights pictures, and never a verdict or a measured value.
+// A default sky lights pictures of dark scenes, but never verdicts or measured values.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != text.npos;
 }
 
-// A room of 4 x 3 x 4 m with a window, whose only lamp emits `strength`.
+// A room of 4 × 3 × 4 m with a window, whose only lamp emits `strength`.
 std::string room(double strength) {
   return fmt::format(
       "WorldBegin\nMaterial \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n"
@@ -101,7 +101,7 @@ TEST_CASE("darkness that is asked for is measured") {
     CHECK(measured(f)[0].lx == 0);
     CHECK(contains(f.err, "there is no light"));
   }
-  // An even sky is to be had by its name.
+  // A uniform sky is available by name.
   const Finished even = t.measure(bare, {"--sky", "even,10000"});
   REQUIRE(even.status == 0);
   CHECK(measured(even)[0].lx == doctest::Approx(10'000).epsilon(5e-3));

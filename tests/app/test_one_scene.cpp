@@ -1,5 +1,5 @@
-// One scene by every format that can hold it gives one picture: modern-hall as pbrt has it, as
-// Mitsuba's XML, and as `convert` writes it in pbrt's format and in glTF.
+// One scene gives one picture in every format: modern-hall as a pbrt file, as Mitsuba's XML, and as
+// `convert` writes it in pbrt's format and in glTF.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 const std::string hall = std::string(TROFFER_SOURCE_DIR) + "/scenes/modern-hall/modern-hall";
 
-// A scene -> Mitsuba's XML, with meshes and images beside it.
+// Writes a scene as Mitsuba's XML, with meshes and images in separate files.
 class MitsubaWriter {
  public:
   MitsubaWriter(const Scene& scene, const Folder& folder) : scene_(scene), folder_(folder) {}
@@ -55,7 +55,7 @@ class MitsubaWriter {
         fov, matrix(-c.right, c.up, c.forward, c.position), c.width, c.height);
   }
 
-  // Images of colours alone; v points up in pbrt.
+  // Supports images of colours only; v points up in pbrt.
   std::string color(const char* name, const ColorInput& in) {
     if (in.texture < 0) return rgb(name, in.value);
     const Texture& t = scene_.textures[size_t(in.texture)];
@@ -156,7 +156,7 @@ class MitsubaWriter {
 
 constexpr int width = 64, height = 48, block = 16;
 
-// By paths; in W/(m² sr).
+// Renders by paths, in W/(m² sr).
 Image picture(const Folder& folder, const std::string& scene, double scale) {
   const std::string out = folder.path("out.exr");
   const Finished f = run_program(folder, {"render", scene, "-o", out, "--size", "64x48", "--method",
@@ -168,7 +168,7 @@ Image picture(const Folder& folder, const std::string& scene, double scale) {
   return image;
 }
 
-// Of blocks, those of the lights themselves left out of the noise: no pixel counts above 3.
+// Returns means of blocks. Pixels are clamped at 3, so that the lights themselves add no noise.
 std::vector<double> blocks_of(const Image& image) {
   std::vector<double> sums(size_t(width / block) * size_t(height / block));
   for (int y = 0; y < height; ++y)
@@ -199,8 +199,8 @@ TEST_CASE("modern-hall by pbrt, glTF, Mitsuba and converted is one picture") {
   const std::string xml = MitsubaWriter(scene, folder).write();
   CHECK(import_scene(xml).warnings.total() == 0);
   check_same(picture(folder, xml, 1), wanted, 0.003, 0.008);
-  // pbrt has no sheets that absorb, glTF's coats are of another kind. (scenes/modern-hall.gltf has
-  // the same colours under glTF's coats, which are brighter: it is no measure.)
+  // pbrt has no absorbing sheets, and glTF's coats differ. (scenes/modern-hall.gltf has the same
+  // colours under glTF's coats, which are brighter, so it is no reference.)
   for (const char* name : {"again.pbrt", "again.glb"}) {
     const std::string again = folder.path(name);
     const Finished f = run_program(folder, {"convert", hall + ".pbrt", again, "--quiet"});

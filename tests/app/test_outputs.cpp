@@ -1,4 +1,4 @@
-// Outputs that are no plain files, that cannot grow, or that are cut short by a signal.
+// Outputs that are no plain files, that cannot grow, or that a signal cuts short.
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -31,7 +31,7 @@ TEST_CASE("a pipe that nobody reads from is told before any work") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt), pipe = folder.path("o.exr");
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
-  // So many samples that the test would not end if they were taken.
+  // With so many samples the test would time out if rendering began.
   const Finished f = run_program(folder, {"render", scene, "-o", pipe, "--spp", "1000000"});
   CHECK(f.status == 1);
   CHECK(f.err == "error: cannot write " + pipe + ": nobody reads from this pipe\n");
@@ -73,7 +73,7 @@ TEST_CASE("-o /dev/stdout adds to the file that standard output goes to") {
   const Finished plain = measure("/dev/stdout", "");
   CHECK(plain.status == 0);
   CHECK(plain.out == csv);
-  // `>>`: what was there stays, and it stays the same file.
+  // `>>` keeps the contents and the identity of the file.
   const std::string log = folder.write("log", "mine\n");
   struct stat before {
   }, after{};
@@ -106,7 +106,7 @@ TEST_CASE("a limit on the size of files: exit 1, one line, nothing left") {
 
 TEST_CASE("a second signal during writing leaves no temporary file") {
   const Folder folder;
-  // Nothing to be seen but a large picture to be written.
+  // Nearly nothing to render, but a large picture to write.
   const std::string scene = folder.write("empty.pbrt",
                                          "Camera \"perspective\"\nWorldBegin\n"
                                          "Shape \"sphere\" \"float radius\" [0.001]\n");

@@ -1,5 +1,5 @@
-// Clear thin glass before lights, by every method: light comes through by Fresnel's equations,
-// once.
+// Clear thin glass in front of lights, by every method: light passes by Fresnel's equations,
+// exactly once.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -18,11 +18,11 @@ using namespace troffer::test;
 
 namespace {
 
-// 1 km wide, at a height.
+// A pane, 1 km wide, at a given height.
 std::string pane(double height) {
   return pbrt_glass({{{-500, -500, height}, {1000, 0, 0}, {0, 1000, 0}}});
 }
-// Wider than the pane, which would mirror surroundings below it otherwise.
+// Wider than the pane, which would otherwise mirror the surroundings below it.
 const char* const floor_below =
     "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] "
@@ -40,7 +40,7 @@ std::vector<Measured> measure(const std::string& world, const std::vector<std::s
   return measured(f);
 }
 
-// Of `panes` above each other, but for what goes to and fro between them.
+// Transmittance of several panes, without reflections between them.
 double through(double cosine, int panes) {
   return std::pow(pane_transmittance(cosine), panes);
 }
@@ -91,7 +91,7 @@ TEST_CASE("what a pane leaves of a light is Fresnel's, by every method and once"
   for (const Case& c : cases)
     for (const int panes : {1, 2})
       for (const auto& method : methods) {
-        // Paths find what goes to and fro between two panes, which is not in the closed form.
+        // Paths include reflections between two panes, which the closed form leaves out.
         const bool is_whole = method.size() == 2 || method.size() == 4;
         if (panes == 2 && is_whole && method[1] != "fixed" && method[1] != "kj92") continue;
         const auto values =
@@ -112,8 +112,8 @@ TEST_CASE("what a pane leaves of a light is Fresnel's, by every method and once"
 }
 
 TEST_CASE("a glazed window is as clean as an open one, and brings what the glass leaves") {
-  // A room lit by the sky alone, through its window: the noise of a glazed one is no more than an
-  // eighth above that of an open one, and paths and the default agree.
+  // A room lit by the sky alone through its window. Glass raises the noise by at most an eighth,
+  // and paths and the default agree.
   Room room;
   room.has_roof_opening = false;
   room.width = 2;
@@ -131,7 +131,7 @@ TEST_CASE("a glazed window is as clean as an open one, and brings what the glass
     CAPTURE(i);
     CAPTURE(open[i].lx);
     CAPTURE(glazed[i].lx);
-    CHECK(glazed[i].error < 1.125 * 1.3 * open[i].error);  // 1.3: errors told vary themselves
+    CHECK(glazed[i].error < 1.125 * 1.3 * open[i].error);  // 1.3: estimated errors vary themselves
     CHECK(glazed[i].lx > 0.82 * open[i].lx);
     CHECK(glazed[i].lx < 0.92 * open[i].lx);
     CHECK(std::abs(usual[i].lx - glazed[i].lx) <
@@ -150,7 +150,7 @@ TEST_CASE("a picture through and beside glass: the same bytes for 1 and 4 thread
                     "LightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [.5 -4 2]\n" +
                     "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [50 50 50]\n" +
                     "Shape \"disk\" \"float radius\" .3 \"float height\" 1\nAttributeEnd\n" +
-                    // A screen of tinted glass within the room, beside the disk.
+                    // A screen of tinted glass within the room, next to the disk.
                     "Material \"dielectric\" \"float eta\" 1\n" +
                     pbrt_glass({{{-1, -1, 0}, {2, 0, 0}, {0, 0, 2}}}));
   std::vector<double> means;

@@ -1,4 +1,4 @@
-// Numbers of the command line: nothing wraps, nothing is read in another base, nothing is cut off.
+// Numbers on the command line: nothing wraps around, changes its base, or is cut off.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -11,7 +11,7 @@ using namespace troffer::test;
 
 namespace {
 
-// What the text becomes; "!" and the reason where it is refused.
+// Returns the normalized text, or "!" and the reason if it is refused.
 std::string read(NumberKind kind, std::string text) {
   const auto wrong = check_number(kind, text);
   return wrong ? "!" + *wrong : text;

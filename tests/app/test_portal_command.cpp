@@ -1,4 +1,4 @@
-// Rectangles that light from beyond a scene comes through alone: --portal, and how exact it is.
+// Portals (--portal): rectangles through which light from outside enters, and their accuracy.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ const char* const points =
 const char* const plain =
     "WorldBegin\nShape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" "
     "[-4 -4 -.1  4 -4 -.1  4 4 -.1  -4 4 -.1]\n";
-// A rectangle in mid-air: outside is above.
+// A rectangle in mid-air; outside is above.
 const char* const corners = "-.5 -.8 2  .5 -.8 2  .5 .8 2  -.5 .8 2";
 
 std::string with_commas(std::string s) {
@@ -86,7 +86,7 @@ TEST_CASE("--portal: the name of a rectangle, what is none, and lights that have
   const auto lit = [&](const std::vector<std::string>& options) {
     return measure_direct(folder, scene, below, options);
   };
-  // The floor is the same mesh, its front upwards; that of the opening looks down.
+  // The floor is the same mesh, with its front upward; the opening's front looks down.
   const auto by_name = lit({"--sky", "overcast", "--portal", "opening"});
   const auto by_corners =
       lit({"--sky", "overcast", "--portal", "-.5,2,-.5,.5,2,-.5,.5,2,.5,-.5,2,.5"});
@@ -98,7 +98,7 @@ TEST_CASE("--portal: the name of a rectangle, what is none, and lights that have
     CHECK(std::abs(by_name[i].lx - paths[i].lx) <
           5 * (paths[i].error + by_name[i].error) + 2e-3 * paths[i].lx);
   }
-  // The opening itself is still there with corners alone, and hides the light.
+  // With corners alone the opening's mesh is still there and blocks the light.
   CHECK(by_corners[0].lx < 1e-3 * by_name[0].lx);
   const auto status = [&](const std::string& portal) {
     return run_program(folder, {"measure", scene, "--points", below, "--portal", portal,
@@ -151,7 +151,7 @@ TEST_CASE("several portals: each lets in its own light, none twice") {
   CHECK(beyond.err.find("counts twice") != std::string::npos);
   CHECK(beside.err.find("counts twice") == std::string::npos);
   CHECK(run(whole, "1,2,3").status == 2);
-  // Blinds outside of a portal reflect none of its light.
+  // Blinds outside of a portal reflect none of its light, so the program warns of them.
   const auto is_told = [&](double height) {
     const std::string scene = folder.write(
         "slats.pbrt", std::string(plain) +

@@ -1,4 +1,4 @@
-// Pictures while the work is under way (--preview).
+// Pictures during the rendering (--preview).
 #include <doctest/doctest.h>
 #include <signal.h>
 #include <unistd.h>
@@ -43,7 +43,7 @@ TEST_CASE("a preview stands there whole after two seconds of work, by every meth
         folder, {"render", scene, "-o", folder.path("o.exr"), "-o", folder.path("o.pfm"), "--spp",
                  "1000000", "--method", method, "--threads", "1", "--preview", "--quiet"});
     program.let_work(2);
-    // As it stands: nothing is half-written.
+    // The file is complete at any moment.
     const std::filesystem::path copy = folder.path("copy.exr");
     std::filesystem::copy_file(folder.path("o.exr"), copy);
     const Image image = read_image(copy.string());
@@ -93,7 +93,8 @@ TEST_CASE("what fails after a preview leaves no preview behind, nor one output o
     const Finished f = run_program(
         folder, {"render", scene, "-o", outputs[0], "-o", outputs[1], "--preview", "--quiet"});
     CHECK(f.status == 1);
-    CHECK(!std::filesystem::exists(folder.path("o.png")));  // outputs come together, or not
+    CHECK(!std::filesystem::exists(folder.path("o.png")));  // outputs are written together or not
+                                                            // at all
   }
 }
 

@@ -1,4 +1,4 @@
-// How far a long command is: a bar on a terminal, lines elsewhere.
+// Progress of long commands: a bar on a terminal, lines elsewhere.
 #include <doctest/doctest.h>
 #include <pty.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@ using namespace troffer;
 
 namespace {
 
-// Standard error goes to a terminal of our own while this lives.
+// Redirects standard error to a pseudo-terminal for its lifetime.
 class Terminal {
  public:
   Terminal() {
@@ -31,7 +31,7 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  // What has been drawn, with an end mark so that there is always something to read.
+  // Returns what has been drawn. An end mark ensures that there is something to read.
   std::string drawn() {
     REQUIRE(write(slave_, "|", 1) == 1);
     std::string all;
@@ -67,7 +67,7 @@ TEST_CASE("progress tells what is done, how far it is, the memory and the time l
         std::string::npos);
   CHECK(text.find(" MB  ") != std::string::npos);
   CHECK(text.find("left") != std::string::npos);
-  CHECK(text.ends_with("\r\033[K|"));  // and takes it away at the end
+  CHECK(text.ends_with("\r\033[K|"));  // the bar is erased at the end
   CHECK(drawn_at(.25, true) == "|");
 }
 
@@ -86,7 +86,7 @@ TEST_CASE("a bar fits its terminal: it shrinks, then time and memory go, then al
   CHECK(drawn(25) == "reading hall.obj  25 %");
   CHECK(drawn(12) == " 25 %");
   CHECK(drawn(3).empty());
-  // Letters count, not bytes.
+  // Characters count, not bytes.
   CHECK(progress_bar("\xc3\xbc\xc3\xbc", {1, 1, 1}, 10) == "\xc3\xbc\xc3\xbc 100 %");
 }
 

@@ -1,4 +1,4 @@
-// troffer radiosity: its files, its options, its ends.
+// The command `troffer radiosity`: files, options, exit statuses.
 #include <doctest/doctest.h>
 #include <signal.h>
 
@@ -19,7 +19,7 @@ std::vector<uint8_t> bytes_of(const std::string& path) {
   return {text.begin(), text.end()};
 }
 
-// Why a file is refused for a scene with these options; empty if it is not.
+// Returns why a file is refused for a scene with these options; empty if it is accepted.
 std::string refusal(const std::string& scene_path, const std::string& solution,
                     const RadiosityOptions* options) {
   const PreparedScene scene(import_scene(scene_path));

@@ -1,4 +1,4 @@
-// troffer report as its users run it: files, bytes, hostile names and files, signals.
+// `troffer report` as users run it: files, reproducibility, hostile names and files, signals.
 #include <doctest/doctest.h>
 #include <signal.h>
 
@@ -75,12 +75,12 @@ TEST_CASE("a report: one page without anything from elsewhere, JSON and a table,
   CHECK(count(page, "<svg ") == 6);
   CHECK(count(page, "polar curve, diffuse surface") == 1);
   CHECK(read_file(folder.path("r/plan.svg")).starts_with("<svg "));
-  // The summary has a row for each surface; cylindrical illuminance adds one.
+  // The summary has a row for each surface, and one for cylindrical illuminance.
   const size_t matrix = page.find("<table class=\"wide dense matrix\">");
   REQUIRE(matrix != std::string::npos);
   const std::string rows = page.substr(matrix, page.find("</table>", matrix) - matrix);
   CHECK(count(rows, "<tr>") == 4);
-  // Words of statistics stand in the appendix alone.
+  // Terms of statistics appear only in the appendix.
   const std::string body = page.substr(0, page.find("<h2>Appendix</h2>"));
   CHECK(body.find("standard error") == std::string::npos);
   CHECK(body.find("ias of the") == std::string::npos);
@@ -161,7 +161,7 @@ TEST_CASE("daylight: factors by themselves where there is an opening, and none i
   const std::string json = read_file(folder.path("r/report.json"));
   CHECK(json.find("\"daylight_factor_percent\": {") != std::string::npos);
   CHECK(json.find("\"electric_lx\": null") != std::string::npos);
-  // Half the sky's light: 50 lx for each per cent.
+  // Half the sky's light: 50 lx per percent.
   const auto mean_after = [&](const std::string& key) {
     const size_t at = json.find("\"value\"", json.find("\"" + key + "\""));
     return std::stod(json.substr(at + 9));
@@ -235,7 +235,7 @@ TEST_CASE("a comparison sets another report beside this one, and refuses what is
   CHECK(count(part, "<b>") >= 2);    // twice the light is a clear difference
   CHECK(part.find("<td>Power, W</td>") != std::string::npos);
   CHECK(read_file(folder.path("a/report.html")).find("<h2>Comparison") == std::string::npos);
-  // A report beside itself differs in nothing.
+  // A report compared with itself shows no differences.
   auto same = command(folder, scene, "c", quick);
   same.insert(same.end(), {"--compare", folder.path("b/report.json")});
   REQUIRE(run_program(folder, same).status == 0);
@@ -279,7 +279,7 @@ TEST_CASE("files of surfaces that are damaged anyhow are read or refused by plac
     (f.status == 0 ? read : refused) += 1;
   }
   CHECK(refused > 5);
-  CHECK(read >= 6);  // those that nothing was done to
+  CHECK(read >= 6);  // the unmodified files
 }
 
 TEST_CASE("a signal ends it with nothing written") {

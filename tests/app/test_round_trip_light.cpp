@@ -1,6 +1,6 @@
-// Property: what is converted without a warning looks as it did. Random materials, images,
-// placings, alpha, normal maps and emission are rendered by paths, as they are and as glTF and pbrt
-// give them back; means over quarters of the pictures agree within noise.
+// Property: a scene that converts without a warning looks the same. Random materials, images,
+// placements, alpha, normal maps and emission are rendered by paths, directly and after a round
+// trip through glTF and pbrt. Means over quarters of the pictures agree within noise.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -149,7 +149,7 @@ class RandomScene {
   }
 };
 
-// Mean luminance of the picture's quarters, cd/m².
+// Returns the mean luminance of the picture's quarters, cd/m².
 std::array<double, 4> quarters(Scene scene) {
   RenderOptions o;
   o.method = Method::path;

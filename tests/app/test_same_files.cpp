@@ -1,5 +1,5 @@
-// An output may be neither an input nor another output, by whatever name it is reached, and links
-// keep pointing to what they point to. Nothing is computed or written before that is told.
+// An output may be neither an input nor another output, by any name, and links keep their targets.
+// The program reports this before it computes or writes anything.
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -19,7 +19,7 @@ namespace {
 using Words = std::vector<std::string>;
 namespace fs = std::filesystem;
 
-// A scene with an image and a mesh of its own, and what else commands read.
+// A scene with an image and a mesh in files, and other inputs of commands.
 class Inputs {
  public:
   Inputs() {
@@ -34,7 +34,7 @@ class Inputs {
   }
   std::string path(const std::string& name) const { return folder.path(name); }
 
-  // The command is refused with status 2 and one line, and no file has changed.
+  // Expects that the command is refused with status 2 and one line, and that no file changes.
   void check_refused(const Words& words, const std::string& said) const {
     std::vector<std::string> before;
     for (const std::string& name : folder.names()) before.push_back(read_file(path(name)));
@@ -104,7 +104,7 @@ TEST_CASE("two outputs that are one file are refused, whatever they are called")
   in.check_refused(with({"-o", other}), "each output needs a file of its own");
   in.check_refused(with({"--stats", a}), "each output needs a file of its own");
   in.check_refused(with({"--stats", in.path("s"), "--checkpoint", in.path("s")}), "--checkpoint");
-  // Neither is there yet; a link leads from one name to the other.
+  // Neither exists yet; a link leads from one name to the other.
   fs::create_symlink("a.exr", in.path("link.exr"));
   in.check_refused(with({"-o", in.path("link.exr")}), "each output needs a file of its own");
   in.folder.write("a.exr", "mine");

@@ -1,4 +1,5 @@
-// render and measure --solution by cells: kept in a file, and gone on from.
+// `render` and `measure` with --solution and cells: a file keeps the cells, and later runs extend
+// it.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -50,7 +51,7 @@ TEST_CASE("--solution keeps cells; the next view goes on from them and says the 
       0);
   CHECK(rounds_told(folder) < rounds);
   CHECK(mean(folder.path("o.exr")) == doctest::Approx(m).epsilon(2e-3));
-  // From where nothing was asked for before, as without the file.
+  // Another view, for which the file has no cells yet: the same result as without the file.
   const std::vector<std::string> elsewhere{
       "--quiet", "--eye", "1.4,-1.2,1.1", "--target", "0,1,0.4", "--threads", "2"};
   REQUIRE(run_program(folder, render_of(folder, scene, elsewhere)).status == 0);
@@ -88,7 +89,7 @@ TEST_CASE("--solution: measure takes and keeps cells too") {
   const std::vector<std::string> plain{"measure", scene, "--points", points, "--quiet"};
   std::vector<std::string> keeping = plain;
   keeping.insert(keeping.end(), {"--solution", file});
-  std::vector<std::string> by_cells = plain;  // two points are measured by paths otherwise
+  std::vector<std::string> by_cells = plain;  // by default two points are measured by paths
   by_cells.insert(by_cells.end(), {"--indirect", "cells"});
   const std::vector<Measured> without = measured(run_program(folder, by_cells));
   const std::vector<Measured> first = measured(run_program(folder, keeping));
@@ -138,7 +139,7 @@ TEST_CASE("--solution: cells of another scene, damaged ones and other files are 
     CHECK(troffer::test::read_file(file) == bytes);
   }
   for (const std::string& n : folder.names()) CHECK(n != "o.exr");
-  // kj92 stands on a radiosity solution.
+  // kj92 needs a radiosity solution.
   folder.write("a.cells", whole);
   CHECK(run_program(folder, render_of(folder, other, {"--method", "kj92"})).status == 1);
 }
@@ -164,7 +165,7 @@ TEST_CASE("radiosity --cells: of all surfaces, for any view; under a sky too") {
     CHECK(mean(folder.path("o.exr")) == doctest::Approx(by_kept).epsilon(5e-3));
     CHECK(rounds < rounds_told(folder));
   }
-  // Not under another sky, and not to be shown.
+  // Refused under another sky, and not available as a viewable file.
   CHECK(run_program(folder, render_of(folder, scene, {"--quiet"})).status == 1);
   CHECK(run_program(folder, {"radiosity", scene, "--cells", "-o", folder.path("a.gltf")}).status ==
         2);

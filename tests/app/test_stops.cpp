@@ -1,5 +1,5 @@
-// SIGINT and SIGTERM at random moments of every command: a file that stood at an output is either
-// as it was or what an uninterrupted run writes, and the program says truly what it has left.
+// SIGINT and SIGTERM at random moments of every command. An existing output is either unchanged or
+// what an uninterrupted run writes, and the program reports correctly what it has left.
 // TROFFER_STOPS=1000 test_app --source-file='*/test_stops.cpp' stops each command 1000 times.
 #include <doctest/doctest.h>
 #include <signal.h>
@@ -35,17 +35,17 @@ int stops() {
   return asked != nullptr ? std::atoi(asked) : 100;
 }
 
-// A command, and the files that it writes, under the folder.
+// A command, and the files that it writes into the folder.
 struct Command {
   Words words, outputs;
-  bool is_exact = true;  // the outputs are the same bytes each time
+  bool is_exact = true;  // each run writes the same bytes
 };
 
 struct Count {
   int stopped = 0, done = 0, left = 0;
 };
 
-// What an interrupted run has left beside the outputs is told, and is a whole file.
+// Checks that every file an interrupted run left is reported and complete.
 void check_left(const Folder& folder, const Finished& f, Count& count) {
   for (const auto& entry : fs::recursive_directory_iterator(folder.path())) {
     const std::string name = entry.path().string();
@@ -78,7 +78,7 @@ void check_outputs(const Command& c, const Finished& f, const std::vector<std::s
   }
 }
 
-// Stops the command so often where its outputs are there already, and where they are not.
+// Stops the command at random moments, with and without existing outputs.
 void stop_often(const Folder& folder, const Command& c, std::mt19937& random) {
   const Finished whole = run_program(folder, c.words);
   CAPTURE(whole.err);
@@ -98,14 +98,14 @@ void stop_often(const Folder& folder, const Command& c, std::mt19937& random) {
     program.send(i % 2 == 0 ? SIGINT : SIGTERM);
     const Finished f = program.wait();
     CAPTURE(f.err);
-    // A SIGINT before the handler stands ends the process silently, with the same status.
+    // A SIGINT before the handlers are installed ends the process silently, with the same status.
     const bool is_stopped = f.status == 130 && !f.err.empty();
     CHECK((is_stopped || f.status == 0 || f.status == 128 + SIGINT || f.status == 128 + SIGTERM));
     ++(f.status == 0 ? count.done : count.stopped);
     if (is_stopped) CHECK(contains(f.err, "interrupted"));
     check_left(folder, f, count);
     if (!is_new) check_outputs(c, f, wanted);
-    if (is_new && is_stopped)  // nothing that is there goes unsaid
+    if (is_new && is_stopped)  // every remaining file is mentioned
       for (const std::string& o : c.outputs)
         if (fs::exists(o)) CHECK(contains(f.err, o));
   }

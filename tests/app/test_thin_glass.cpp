@@ -1,5 +1,5 @@
-// Panes as files have them: thin boxes of solid glass, glTF's transmission, OBJ's dissolve. What
-// comes through is Fresnel's, as of thin sheets; and what they mirror is seen without noise.
+// Panes as files describe them: thin boxes of solid glass, glTF's transmission, OBJ's dissolve.
+// They transmit by Fresnel's equations like thin sheets, and their reflections show no noise.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ const char* const black_floor =
     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] "
     "\"point3 P\" [-50 -50 0  50 -50 0  50 50 0  -50 50 0]\n";
 
-// A closed box of 1 km by 1 km, so thick, of glass.
+// A closed box of glass, 1 km by 1 km, between two heights.
 std::string glass_box(double from, double to) {
   return fmt::format(
       "Material \"dielectric\" \"float eta\" 1.5\n"
@@ -44,7 +44,7 @@ std::vector<Measured> measure(const Folder& folder, const std::string& scene, co
   return measured(f);
 }
 
-// Under an even sky of 10 000 lx, through so many panes.
+// Illuminance through several panes under a uniform sky of 10 000 lx.
 double under_sky(int panes) {
   return 2e4 * integrate([&](double c) { return c * std::pow(pane_transmittance(c), panes); }, 0.0,
                          1.0, 100);
@@ -89,7 +89,7 @@ TEST_CASE("a thick body of glass stays one") {
       folder.write("s.pbrt", std::string("WorldBegin\n") + black_floor + glass_box(1, 100));
   const auto values = measure(folder, scene, "x,y,z,nx,ny,nz\n.3,.1,0,0,0,1\n",
                               {"--sky", "even,10000", "--up", "0,0,1", "--indirect", "none"});
-  CHECK(values[0].lx < 1);  // what it bends is a caustic
+  CHECK(values[0].lx < 1);  // refracted light is a caustic
 }
 
 TEST_CASE("glTF: transmission without volume is a pane, tinted by the base colour") {

@@ -1,4 +1,4 @@
-// Which way is up: decided, said, and chosen by --up, in every command that loads a scene.
+// The up direction: decided, reported, and chosen by --up, in every command that loads a scene.
 #include <doctest/doctest.h>
 
 #include <nlohmann/json.hpp>
@@ -14,7 +14,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// A closed box from 0,0,0; faces outward.
+// A closed box from 0,0,0 with faces outward.
 std::string box_obj(const std::string& x, const std::string& y, const std::string& z) {
   std::string text;
   for (const char* a : {"0", x.c_str()})
@@ -24,7 +24,7 @@ std::string box_obj(const std::string& x, const std::string& y, const std::strin
   return text + "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
 }
 
-// A corridor of 10 x 3 x 2 m with y up; its lamp faces down.
+// A corridor of 10 × 3 × 2 m with y up; its lamp faces down.
 const char* const corridor_obj =
     "mtllib c.mtl\n"
     "v 0 0 2\nv 10 0 2\nv 10 0 0\nv 0 0 0\nv 0 3 0\nv 10 3 0\nv 10 3 2\nv 0 3 2\n"
@@ -39,7 +39,7 @@ const char* const no_evidence =
 
 }  // namespace
 
-// The illuminance of an unobstructed horizontal plane is the sky's own: 10 000 lx.
+// An unobstructed horizontal plane has the sky's own illuminance: 10 000 lx.
 TEST_CASE("a roof under a sky of 10 000 lx has 10 000 lx, or a warning names --up") {
   const Folder folder;
   const std::string corridor = folder.write("corridor.obj", box_obj("10", "3", "2")),

@@ -1,4 +1,4 @@
-// What the program says of mistyped command lines: what was wrong, and what to write.
+// Messages for mistyped command lines: what is wrong, and what to write.
 #include <doctest/doctest.h>
 
 #include <nlohmann/json.hpp>
@@ -153,7 +153,7 @@ TEST_CASE("files that are missing or empty") {
          folder.path("o.exr"), "--quiet"},
         folder.path("lamp.pbrt") + ":1:1: has nothing to show: no surface, sky or image"}},
       1);
-  // A sky is something to see.
+  // A sky is visible.
   CHECK(run_program(folder,
                     {"render", folder.path("empty.pbrt"), "-o", folder.path("o.exr"), "--sky",
                      "even", "--size", "4x4", "--quiet", "--eye", "0,0,0", "--target", "1,0,0"})
@@ -191,7 +191,7 @@ TEST_CASE("help lists the commands, and a command's options by groups") {
 
   const std::string options = run_program(folder, {"help", "render"}).out;
   CHECK(run_program(folder, {"render", "--help"}).out == options);
-  size_t at = 0;  // groups in this order
+  size_t at = 0;  // groups come in this order
   for (const char* heading :
        {"Usage: troffer render SCENE -o FILE [options]\n", "\nInput:\n  SCENE ", "\nView:\n",
         "\nLight:\n", "\nQuality:\n", "\nOutput:\n  -o, --output FILE ", "\nLimits:\n",
@@ -225,6 +225,6 @@ TEST_CASE("every option of every command has its group and the name of its value
     for (const auto& group : command["groups"]) {
       CAPTURE(command["name"].get<std::string>());
       CAPTURE(group.dump());
-      CHECK(group["name"] != "Other");  // add the option to app/option_table.cpp
+      CHECK(group["name"] != "Other");  // if this fails, add the option to app/option_table.cpp
     }
 }

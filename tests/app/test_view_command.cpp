@@ -1,4 +1,4 @@
-// `troffer view` from its start to its end.
+// `troffer view` from start to end.
 #include <doctest/doctest.h>
 #include <signal.h>
 
@@ -30,7 +30,7 @@ TEST_CASE("view tells its address, and a signal ends it") {
 
 namespace {
 
-// Asks a view for another time of day; returns the answer's status.
+// Asks a view for another time of day. Returns the status of the answer.
 int ask_for_time(const std::string& address, const std::string& time) {
   const std::string scheme = "http://";
   const size_t slash = address.find('/', scheme.size());
@@ -44,7 +44,7 @@ int ask_for_time(const std::string& address, const std::string& time) {
   return status_of(client.rest());
 }
 
-// Where the page is, once the program says it.
+// Returns the page's address, once the program prints it.
 std::string address_of(const Running& program) {
   for (int i = 0; i < 6000; ++i) {
     const std::string out = program.output();

@@ -1,5 +1,5 @@
-// Hours of weather files that were lost, or read for another: no diffuse light, missing codes, the
-// end of a day, southern latitudes.
+// Difficult hours of weather files: no diffuse light, missing codes, the end of a day, southern
+// latitudes.
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -14,8 +14,8 @@ using namespace troffer::test;
 
 namespace {
 
-// EnergyPlus' data dictionary, "EnergyPlus Weather File": of a row the fields from global
-// horizontal radiation on are 14 to 16, Wh/m².
+// EnergyPlus' data dictionary, "EnergyPlus Weather File": fields 14 to 16 of a row are global
+// horizontal, direct normal and diffuse radiation, Wh/m².
 std::string epw(const std::string& location, const std::string& month_day, int hour,
                 const std::string& global_direct_diffuse, int year = 2005) {
   std::string text = "LOCATION," + location + "\nDATA PERIODS,1,1,Data,Sunday,1/1,12/31\n";
@@ -62,15 +62,15 @@ TEST_CASE("an hour with direct light alone has its sun") {
   WeatherTest t;
   const double alone = t.lx(epw(equator, "3,21", 13, "780,800,0"), "03-21T12:30");
   const double with_little = t.lx(epw(equator, "3,21", 13, "781,800,1"), "03-21T12:30");
-  // A watt of beam has 90 to 110 lm by Perez' efficacies for clear skies; the sun is near the
+  // By Perez' efficacies for clear skies a watt of beam has 90 to 110 lm; the sun is near the
   // zenith.
   CHECK(alone > 70'000);
   CHECK(alone < 90'000);
   CHECK(with_little == doctest::Approx(alone).epsilon(0.01));
-  // Diffuse light alone has no sun: the same on all sides.
+  // Diffuse light alone has no sun: the same from all sides.
   const double north = t.lx(epw(equator, "3,21", 9, "90,0,90"), "03-21T08:30", "0,1,0");
   CHECK(north > 0);
-  // By hand, and by --sky.
+  // The same values by --sky.
   const Finished f = run_program(
       t.folder, {"measure", t.scene, "--points", t.folder.path("p.csv"), "--sky", "perez:800,0",
                  "--sun", "0,60", "--indirect", "none", "--up", "0,0,1"});
@@ -95,7 +95,7 @@ TEST_CASE("codes of missing irradiance are an error, and no light is told by wha
   const Finished dark = t.run(epw(equator, "3,21", 13, "500,0,0"), "03-21T12:30", "0,0,1");
   CHECK(dark.status == 0);
   CHECK(contains(dark.err, "500 W/m2 on the ground"));
-  // The column of global light is of no other use.
+  // The column of global radiation does not matter.
   CHECK(t.lx(epw(equator, "3,21", 13, "9999,800,100"), "03-21T12:30") ==
         doctest::Approx(t.lx(epw(equator, "3,21", 13, "880,800,100"), "03-21T12:30")));
 }
@@ -109,7 +109,7 @@ TEST_CASE("an hour's row ends at its number, and a day's last one at 24:00") {
   CHECK(t.lx(noon, "03-21T13:00") == 0);
   CHECK(t.lx(noon, "03-21 12:30") == t.lx(noon, "03-21T12:30"));
   CHECK(t.run(noon, "03-21T24:00", "0,0,1").status == 0);
-  // Beyond the polar circle the sun is up at the end of a day.
+  // Inside the polar circle the sun is up at the end of a day.
   const std::string tromso = epw("Tromso,-,NOR,none,1,69.7,18.9,1,5", "6,21", 24, "30,200,20");
   CHECK(t.lx(tromso, "06-21T24:00") > 1000);
   CHECK(t.lx(tromso, "06-21T24:00") == doctest::Approx(t.lx(tromso, "06-21T23:59")).epsilon(0.02));
@@ -120,7 +120,7 @@ TEST_CASE("in the south the sun of noon stands in the north") {
   const std::string june = epw(sydney, "6,21", 13, "500,800,0");
   CHECK(t.lx(june, "06-21T12:00", "0,1,0") > 40'000);  // +y is north
   CHECK(t.lx(june, "06-21T12:00", "0,-1,0") == 0);
-  // 90 - 33.9 - 23.4 degrees above the horizon.
+  // The sun is 90 - 33.9 - 23.4 degrees above the horizon.
   CHECK(t.lx(june, "06-21T12:00", "0,0,1") / t.lx(june, "06-21T12:00", "0,1,0") ==
         doctest::Approx(std::tan(rad_from_deg(32.7))).epsilon(0.02));
   const std::string vienna = epw("Wien,-,AUT,none,1,48.2,16.4,1,203", "6,21", 13, "500,800,0");

@@ -1,4 +1,5 @@
-// Light in texels and at vertices against closed forms, against measuring, and where walls stand.
+// Light at texels and vertices, compared with closed forms and with `measure`; light at the foot of
+// walls.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -47,7 +48,7 @@ Rgb bilinear(const Image& image, const Vec2& uv) {
          (at(x0, y0 + 1) * (1 - fx) + at(x0 + 1, y0 + 1) * fx) * fy;
 }
 
-// What a lightmap shows at places of a surface: weights of three corners.
+// Visits places of a surface with the light that a lightmap shows there.
 template <class Visit>
 void for_places(const BakeResult& r, const MeshInWorld& mesh, const BakedSurface& surface,
                 const Visit& visit, const Vec3& facing = {}) {
@@ -94,7 +95,7 @@ TEST_CASE("texels of a floor under a rectangle have its exact irradiance") {
   const PreparedScene prepared(as_meshes(scene));
   const BakeResult r = bake(prepared, quick(128), {}, never_stop);
   REQUIRE(r.is_complete);
-  CHECK(r.figures.stands == 1);  // not the source itself
+  CHECK(r.figures.stands == 1);  // the source itself has none
   double worst = 0;
   size_t places = 0;
   for_places(r, MeshInWorld(r.scene.meshes[0]), r.baked.meshes[0], [&](const Vec3& p, Rgb found) {
@@ -105,7 +106,7 @@ TEST_CASE("texels of a floor under a rectangle have its exact irradiance") {
   });
   CHECK(places == 12);
   CHECK(worst < 0.02);
-  // Each texel by itself: the mean over it is the value at its middle, to second order.
+  // The mean over a texel equals the value at its middle, to second order.
   CHECK(r.figures.error_lx < 0.01 * r.figures.mean_lx);
 }
 
@@ -158,7 +159,7 @@ TEST_CASE("no two charts share a texel, and gutters repeat what they border") {
     const auto [at, is_new] = owner.insert({{t.x, t.y}, t.chart});
     CHECK(is_new);
   }
-  // What bilinear look-ups read, a texel around each of a chart's, no other chart covers.
+  // Bilinear filtering reads one texel around a chart; no other chart may cover those texels.
   size_t bled = 0;
   for (const TexelSites::Texel& t : sites.texels())
     for (int dy = -2; dy <= 2; ++dy)
@@ -170,7 +171,8 @@ TEST_CASE("no two charts share a texel, and gutters repeat what they border") {
 }
 
 TEST_CASE("a wall without thickness lets nothing through, nor does a floor under a box darken") {
-  // Two rooms, floors of their own, and between them a wall: two quads in one place, back to back.
+  // Two rooms with floors of their own, and between them a wall: two coincident quads, back to
+  // back.
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.7f});
   add_box_inside(s, grey, {-3, -1, 0}, {0, 1, 2});  // lit
@@ -180,7 +182,7 @@ TEST_CASE("a wall without thickness lets nothing through, nor does a floor under
   const uint32_t quad = add_quad(
       s, grey, {Vec3{-2, -0.5f, 1.9f}, {-2, 0.5f, 1.9f}, {-1, 0.5f, 1.9f}, {-1, -0.5f, 1.9f}});
   make_light(s, quad, Rgb{10});
-  // A box that stands on the lit floor: where it stands no light gets.
+  // A box on the lit floor: the floor below it gets no light.
   Mesh box;
   Scene of_box;
   add_box_inside(of_box, grey, {-0.9f, -0.4f, 0}, {-0.3f, 0.4f, 0.5f});
@@ -196,7 +198,7 @@ TEST_CASE("a wall without thickness lets nothing through, nor does a floor under
   const BakeResult r = baked(s, quick(256));
   const Mesh* mesh = nullptr;
   const BakedSurface& dark = surface_named(r, "dark side", mesh);
-  // Each wall is seen from both sides, and so has a layer for each.
+  // Each wall is visible from both sides, so it has two layers.
   double brightest = 0;
   for_places(r, MeshInWorld(*mesh), dark,
              [&](const Vec3&, Rgb e) { brightest = std::max(brightest, double(luminance(e))); },
@@ -208,7 +210,7 @@ TEST_CASE("a wall without thickness lets nothing through, nor does a floor under
              [&](const Vec3&, Rgb e) { darkest = std::min(darkest, double(luminance(e))); },
              {-1, 0, 0});
   CHECK(darkest > 0.1 * r.figures.mean_lx);
-  // Along the foot of the box, a third of a texel before it, the lightmap shows what measure finds.
+  // At the foot of the box, a third of a texel in front of it, the lightmap agrees with measure.
   const PreparedScene prepared(as_meshes(s));
   const BakedSurface& floor = surface_named(r, "floor", mesh);
   std::vector<MeasuringPoint> points;
@@ -289,7 +291,7 @@ TEST_CASE("instances share their mesh but not their light") {
     for_places(r, mesh_at(r.scene, uint32_t(r.scene.meshes.size() + 2 + i)), r.baked.instances[i],
                [&](const Vec3&, Rgb e) { mean[i] += double(luminance(e)); });
   CHECK(mean[0] > 1.3 * mean[1]);
-  // The near one's light as that of a copy.
+  // The near instance has the light of a copy.
   Scene copy = lit_floor();
   copy.meshes.push_back(copied_to_world(mesh_at(s, uint32_t(s.meshes.size() + 2))));
   copy.meshes.push_back(copied_to_world(mesh_at(s, uint32_t(s.meshes.size() + 3))));

@@ -1,4 +1,4 @@
-// Files with baked light: sound glTF, read again, and rendered again as the scene was.
+// Files with baked light are valid glTF, can be read again, and render like the scene.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ Written written(const Scene& scene, BakedShading shading, const std::string& pat
   const PreparedScene prepared(as_meshes(scene));
   BakeResult r = bake(prepared, o, {}, never_stop);
   REQUIRE(r.is_complete);
-  export_scene(r.scene, path, &r.baked, Vec3{0, 1, 0});  // positions stay
+  export_scene(r.scene, path, &r.baked, Vec3{0, 1, 0});  // keeps positions
   Written w;
   w.file = json::parse(std::ifstream(path));
   if (w.file.contains("buffers")) {
@@ -69,8 +69,8 @@ float float_at(const Written& w, const json& accessor, size_t component) {
   return value;
 }
 
-// What a validator looks at: bounds of positions, lengths, sets of coordinates without gaps,
-// references, extensions that are named.
+// Checks what a validator does: bounds of positions, lengths, contiguous sets of coordinates,
+// references, declared extensions.
 void check_sound(const Written& w) {
   const json& f = w.file;
   CHECK(f["buffers"][0]["byteLength"] == w.data.size());
@@ -87,7 +87,7 @@ void check_sound(const Written& w) {
       for (const auto& [name, index] : p["attributes"].items()) {
         const json& a = f["accessors"][index.get<size_t>()];
         CHECK(a["count"] == positions["count"]);
-        const bool is_uv = name == "TEXCOORD_1";  // the lightmap's
+        const bool is_uv = name == "TEXCOORD_1";  // the lightmap's coordinates
         for (size_t i = 0; is_uv && i < 2 * a["count"].get<size_t>(); ++i) {
           const float v = float_at(w, a, i);
           CHECK((v >= 0 && v <= 1));
@@ -137,7 +137,7 @@ TEST_CASE("lightmaps stand in sound files, and instances share all but their coo
   CHECK(light["intensity"].get<double>() == doctest::Approx(r.baked.white));
   CHECK(w.file["asset"]["extras"]["lightmap"]["white"].get<double>() ==
         doctest::Approx(r.baked.white));
-  // The mean of what the file shows, as an engine reads it, is that of what was computed.
+  // The mean of the file's light, as an engine reads it, equals the computed mean.
   const Scene again = import_scene(folder.path("room.gltf"));
   CHECK(triangle_count(again) == triangle_count(r.scene));
   size_t with_second = 0;
@@ -151,7 +151,7 @@ TEST_CASE("what emits as it was lit looks as the room did") {
   const Written w = written(scene, BakedShading::emissive, folder.path("room.gltf"));
   check_sound(w);
   const Scene again = import_scene(folder.path("room.gltf"));
-  // Looked at from the middle towards a corner.
+  // View from the middle toward a corner.
   Camera c;
   c.position = {-1.8f, -1.8f, 1.5f};
   c.forward = normalize(Vec3{1, 1, -0.3f});
@@ -199,7 +199,7 @@ TEST_CASE("a lightmap is named when a file is read, and shown where it is asked 
     CHECK(!m.lights.empty());
     CHECK(shown.materials[m.material].kind == MaterialKind::diffuse);
   }
-  // A wall's mean: what it sends is base colour × E / pi.
+  // Mean of a wall, which sends base colour × E / π.
   Camera c;
   c.position = {0, 0, 1.2f};
   c.forward = {1, 0, 0};
@@ -253,7 +253,7 @@ TEST_CASE("hostile meshes are baked or left dark, never more") {
   bad.uvs_2.assign(6, Vec2{nan, -3});
   bad.triangles = {{0, 1, 2}, {0, 1, 3}, {1, 4, 3}, {0, 1, 3}, {1, 0, 3}, {3, 3, 3}, {0, 5, 5}};
   s.meshes.push_back(bad);
-  Mesh fan;  // slivers that share an edge, all of them
+  Mesh fan;  // slivers that all share one edge
   fan.material = grey;
   fan.positions = {{0, 0, 1}, {0.5f, 0, 1}};
   for (int i = 0; i < 200; ++i) {

@@ -1,4 +1,4 @@
-// Meshes laid out flat: whatever they are, no chart lies over itself, and no two share a place.
+// Charts of arbitrary meshes do not overlap themselves or share places.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -27,8 +27,8 @@ double area_in_space(const Mesh& m, uint32_t triangle) {
   return length(cross(Vec3d(m.positions[t[1]]) - p, Vec3d(m.positions[t[2]]) - p)) / 2;
 }
 
-// Every triangle with area is in one chart, within its rectangle, not much smaller than it is, and
-// over no other: all pairs are tried.
+// Checks that every triangle with area is in one chart, inside its rectangle, not much shrunk, and
+// overlaps no other: all pairs are tested.
 void check_charts(const Mesh& mesh) {
   const ChartedMesh m = charted(mesh);
   REQUIRE(m.mesh.triangles.size() == mesh.triangles.size());
@@ -104,12 +104,12 @@ TEST_CASE("curved, torn, doubled and broken meshes are laid out without overlap"
   for (const uint64_t seed : {1, 2, 3}) check_charts(soup(300, seed));
   Mesh doubled = dented_ball(0, 8);
   const std::vector<Triangle> once = doubled.triangles;
-  for (const Triangle& t : once) {  // each twice more: alike, and turned over
+  for (const Triangle& t : once) {  // each twice more: once identical, once flipped
     doubled.triangles.push_back(t);
     doubled.triangles.push_back({t[0], t[2], t[1]});
   }
   check_charts(doubled);
-  // A ramp that winds around itself three times, nearly flat: its turns lie over each other.
+  // A nearly flat ramp that winds around three times, so that its turns lie above each other.
   Mesh ramp;
   for (int i = 0; i <= 90; ++i) {
     const float phi = float(i) * 0.2094f;
@@ -168,6 +168,6 @@ TEST_CASE("a second set of coordinates serves only where it can hold a lightmap"
   REQUIRE(chart_of_uvs(m, {{0, 0}, {0.5f, 0}, {0.5f, 0.5f}, {0, 0.5f}}, out));
   CHECK(double(out.charts[0].size.x) == doctest::Approx(2));
   CHECK(!chart_of_uvs(m, {{0, 0}, {1.5f, 0}, {1, 1}, {0, 1}}, out));      // outside
-  CHECK(!chart_of_uvs(m, {{0, 0}, {1, 0}, {0.5f, 1}, {1, 0.01f}}, out));  // one over the other
+  CHECK(!chart_of_uvs(m, {{0, 0}, {1, 0}, {0.5f, 1}, {1, 0.01f}}, out));  // overlapping
   CHECK(!chart_of_uvs(m, {{0, 0}, {1, 0}, {0.5f, 0}, {0, 1}}, out));      // without area
 }

@@ -1,5 +1,5 @@
-// The foot of walls: a floor that reaches below them shows, in the lit room, what measure finds
-// there. Expected values: troffer measure --method path of the same scenes.
+// The foot of walls: a floor that continues below them shows, in the lit room, the light that
+// `measure` finds there. Expected values: troffer measure --method path of the same scenes.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ Scene room(const std::string& name) {
   return import_scene(std::string(TROFFER_SOURCE_DIR "/tests/bake/rim/") + name);
 }
 
-// Bilinear.
+// Samples an image bilinearly.
 double light_at(const Image& image, const Vec2& uv) {
   const double x = double(uv.x) * image.width - 0.5, y = double(uv.y) * image.height - 0.5;
   const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
@@ -40,7 +40,8 @@ double light_at(const Image& image, const Vec2& uv) {
   return sum;
 }
 
-// What the lightmap shows at a place of the floor, which lies at y = 0; as seen from above.
+// Returns the light that the lightmap shows at a place of the floor, which lies at y = 0, as seen
+// from above.
 double light_on_floor(const BakeResult& r, double x, double z) {
   const Vec3d at(x, 0, z);
   for (size_t m = 0; m < r.scene.meshes.size(); ++m) {

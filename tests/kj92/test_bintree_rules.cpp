@@ -1,4 +1,4 @@
-// Tests each rule of docs/bintree.md on trees small enough to know the result.
+// Tests each rule of docs/method/bintree.md on trees small enough to know the result.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Tests pattern reuse from point to point (docs/bintree.md) under moving shadows.
+// Tests pattern reuse from point to point (docs/method/bintree.md) under moving shadows.
 #include <doctest/doctest.h>
 
 #include <cmath>

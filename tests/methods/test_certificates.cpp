@@ -117,7 +117,7 @@ bool is_on(const FlatSource& s, const Vec3d& y) {
 
 // Sets `end` of the segment from x that reaches the source in the direction of `through`; false if
 // there is none. Anything within 2e-6 M of a flat source's plane counts as lying in it
-// (docs/certified.md, "Shafts"). Where light is claimed, the segment ends where that `slab` begins.
+// (docs/method/certified.md, "Shafts"). Where light is claimed, the segment ends where that `slab` begins.
 bool aim(const CertificateScene& s, const Vec3d& x, const Vec3d& through, double slab, Vec3d& end) {
   const Vec3d d = through - x;
   if (s.shape == SourceShape::sphere) {

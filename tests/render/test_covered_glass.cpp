@@ -85,7 +85,7 @@ TEST_CASE("glass under coats and films is not seen in a furnace") {
   const PreparedScene scene(std::move(s));
   RenderOptions o = furnace_options();
   const Ensemble e = render_ensemble(scene, furnace_camera(), o, 32);
-  // Rough coats and films conserve energy within some percent per channel (docs/materials.md).
+  // Rough coats and films conserve energy within some percent per channel (docs/reference/materials.md).
   CHECK(pixels_off(
             e, [](size_t) { return double(L0); }, 3e-2) == 0);
   CHECK(e.mean.mean() == doctest::Approx(double(L0)).epsilon(3e-3));

@@ -1,12 +1,12 @@
-// A small office to assess: 4 × 5 × 2.8 m, z up, a desk with a keyboard, a shelf, a cabinet,
-// two panels.
+// A small office to assess, 4 × 5 × 2.8 m, z up: a desk with a keyboard, a shelf, a cabinet, two
+// panels. Tests of assessments and of searches use it.
 #pragma once
 
 #include "support/scenes.h"
 
 namespace troffer::test {
 
-// A closed box [a, b], front outward.
+// Adds a closed box [a, b] with its front outward.
 inline void add_body(Scene& s, uint32_t material, const Vec3& a, const Vec3& b,
                      const std::string& name) {
   const auto first = s.meshes.size();

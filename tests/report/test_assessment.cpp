@@ -1,4 +1,4 @@
-// Whole assessments against closed forms, against `path`, and against the sum of their parts.
+// Whole assessments compared with closed forms, with `path`, and with the sum of their parts.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ AssessmentOptions options_of(int spp) {
   return o;
 }
 
-// Black, so that all light is direct.
+// A black room, so that all light is direct.
 Scene black_room_with_panel() {
   Scene s;
   s.is_photometric = true;
@@ -77,7 +77,8 @@ TEST_CASE("a panel over a work plane: each point and the mean against Lambert's 
   }
   const GridSummary g = summary_of(s.electric);
   CHECK(g.mean.value == doctest::Approx(sum / double(s.grid.points.size())).epsilon(2e-3));
-  // The grid's mean is that of the area without its border, by quadrature, within some per cent.
+  // The grid's mean approximates that of the area without its border, by quadrature, within a few
+  // percent.
   const double mean = integrate_2d<double>(exact, -1.5, 1.5, -2, 2, 24) / 12;
   CHECK(g.mean.value == doctest::Approx(mean).epsilon(0.02));
   REQUIRE(!a.checks.empty());
@@ -119,7 +120,7 @@ TEST_CASE("luminaires alone add up to all; a watt for each; the report of an off
     CHECK(parts.value == doctest::Approx(mean.value).epsilon(0.02));
     CHECK(s.by_group[0].value > 1.5 * s.by_group[1].value);
   }
-  // Points under the keyboard are left out, and those of the floor under the cabinet.
+  // Points under the keyboard and floor points under the cabinet are left out.
   CHECK(a.surfaces[0].grid.points.size() < 50);
   for (const GridPoint& p : a.surfaces[0].grid.points)
     CHECK_FALSE(
@@ -200,7 +201,7 @@ TEST_CASE("many luminaires are told by families") {
   CHECK(groups[2].luminaires == 20);
   CHECK(groups[2].watts == 100);
   CHECK_FALSE(groups[0].watts.has_value());
-  CHECK(light_groups(s, {}, 2).size() == 3);  // the strongest two, and others
+  CHECK(light_groups(s, {}, 2).size() == 3);  // the strongest two, and "others"
   CHECK(light_groups(s, {}, 2)[2].name == "others");
   CHECK_THROWS_AS(light_groups(s, {{"nobody", 5}}, 12), UsageError);
 }
@@ -234,13 +235,13 @@ TEST_CASE("observers on the floor are judged by the task's UGR limit") {
     CHECK(c.profile == "office-writing");
   }
   CHECK(judged == 1);
-  // A profile that limits nothing is not judged.
+  // A profile without limits yields no check.
   o.surfaces = {{"floor", "none", "", 0, 0, {}, {}, {}}};
   for (const Check& c : assess(bright, o, {}, never_stop).checks) CHECK(c.quantity != "UGR");
 }
 
 TEST_CASE("an open check says how many samples would decide it") {
-  // Half the distance to two standard errors: four times as many.
+  // The value's distance is half of two standard errors: four times as many samples decide.
   const Check c{"desk", "p", "Ēm", "lx", 500, false, {503, 3}, verdict_of({503, 3}, 500, false)};
   CHECK(samples_to_decide(c, 1024).value() == doctest::Approx(4096));
   const Check sure{"desk", "p", "Ēm", "lx", 500, false, {520, 3}, Verdict::pass};

@@ -1,4 +1,4 @@
-// Floors inside walls: their areas by hand, whatever stands on the slab or reaches over it.
+// Floors within walls: their areas are known, whatever stands on the slab or above it.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -56,12 +56,12 @@ using Areas = std::vector<double>;
 
 TEST_CASE("the slab under walls is no floor: 48 m² of 53.8") {
   CHECK(house().areas() == Areas{48});
-  House thin;  // walls without thickness, on a slab that reaches 30 cm beyond them
+  House thin;  // walls without thickness, on a slab that extends 30 cm beyond them
   thin.body({-0.3f, -0.3f, -0.3f}, {6.3f, 8.3f, 0}).body({-0.3f, -0.3f, 2.8f}, {6.3f, 8.3f, 3.1f});
   for (const uint32_t m : add_box_inside(thin.scene, thin.grey, {0, 0, 0}, {6, 8, 2.8f}))
     thin.scene.meshes[m].name = "wall";
   CHECK(thin.areas() == Areas{48});
-  // Without a roof the walls alone tell the room from the ground around it.
+  // Without a roof, only the walls separate the room from the ground around it.
   House open;
   open.slab().walls().board(-20, -20, 20, 20, -0.3f);
   CHECK(open.areas() == Areas{48});
@@ -103,7 +103,7 @@ TEST_CASE("several rooms on one slab, parted above their doors") {
   CHECK(h.areas() == Areas{29.4, 18});
   const auto floors = find_floors(PreparedScene(Scene(h.scene)), up);
   REQUIRE(floors.size() == 2);
-  CHECK(floors[0].name == "slab 1");  // the far one is first on the plan
+  CHECK(floors[0].name == "slab 1");  // the far one comes first on the plan
   CHECK(floors[1].name == "slab 2");
   CHECK(floors[1].border == doctest::Approx(0.45));  // 15 % of 3 m
 }

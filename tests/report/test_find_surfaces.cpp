@@ -1,4 +1,4 @@
-// Desks and floors that are found by themselves, and surfaces by name.
+// Automatic search for desks and floors, and surfaces by name.
 #include <doctest/doctest.h>
 
 #include "base/error.h"

@@ -1,4 +1,4 @@
-// UGR against cases computed by hand, and Guth's index against the table of CIE 117.
+// UGR compared with hand calculations, and Guth's index with the table of CIE 117.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -16,11 +16,11 @@ namespace {
 
 constexpr Vec3d up{0, 0, 1};
 
-double index_at(double beside, double above) {  // per way ahead
+double index_at(double beside, double above) {  // relative to the distance ahead
   return position_index({1, beside, above}, {1, 0, 0}, up);
 }
 
-// A source of .6 × .6 m, 3 m ahead and 1 m above the eye at (0,0,1.2), that faces the eye.
+// A source of .6 × .6 m that faces the eye at (0,0,1.2), 3 m ahead and 1 m above it.
 Scene panel_ahead(Rgb radiance, float side = 0.6f) {
   Scene s;
   s.is_photometric = true;
@@ -40,7 +40,7 @@ TEST_CASE("the position index is that of CIE 117's table") {
   struct Row {
     double beside, above, index;
   };
-  // T/R, H/R and p of the table; the formula is fitted to it within some per cent.
+  // T/R, H/R and p of the table; the formula fits it within a few percent.
   for (const Row& r :
        {Row{0, 0, 1}, {0, 0.5, 2.86}, {0, 1, 7}, {0, 1.5, 13.15}, {0.5, 0, 1.43}, {1, 0, 2.11}}) {
     CAPTURE(r.beside);
@@ -66,7 +66,7 @@ TEST_CASE("one panel, by hand: 8 log10(.25 / Lb L² ω / p²)") {
   const PreparedScene scene(panel_ahead(Rgb{5000}));
   const auto seen = seen_luminaires(scene, ahead, up, 0);
   REQUIRE(seen.size() == 1);
-  // Of a square that faces the eye at the distance r: ω = 4 asin(a² / (r² + a²)), a half its side.
+  // A square that faces the eye at distance r: ω = 4 asin(a² / (r² + a²)), with a half its side.
   const double r = std::sqrt(10.0), a = 0.3;
   const double solid_angle = 4 * std::asin(a * a / (r * r + a * a));
   CHECK(seen[0].solid_angle == doctest::Approx(solid_angle).epsilon(1e-3));
@@ -146,7 +146,7 @@ TEST_CASE("lamps of one name that hang apart are luminaires of their own") {
 }
 
 TEST_CASE("a luminaire of two faces counts by its mean luminance") {
-  // Two halves, side by side, of one name: 2000 and 8000 cd/m².
+  // Two adjacent halves with one name: 2000 and 8000 cd/m².
   Scene s;
   s.is_photometric = true;
   const uint32_t black = add_diffuse(s, Rgb{0});

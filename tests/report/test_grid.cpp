@@ -1,4 +1,4 @@
-// Grids, statistics and isolines against what they are defined by.
+// Grids, statistics and isolines compared with their definitions.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ TEST_CASE("cells are no larger than 0.2 · 5^(log10 d), and never than 10 m") {
   CHECK(largest_cell(1e4) == 10);
   struct Row {
     double d;
-    int least;  // the standard's own table of points
+    int least;  // from the standard's table of points
   };
   for (const Row& r :
        {Row{0.4, 3}, {0.6, 3}, {1, 5}, {2, 6}, {5, 8}, {10, 10}, {25, 12}, {50, 17}, {100, 20}}) {
@@ -48,7 +48,7 @@ TEST_CASE("sides of cells have a ratio between .5 and 2, and d is the shorter si
   CHECK(corridor.columns == 105);
   // Less than twice as long: d = 3.9, p = .518.
   CHECK(grid_shape(3.9, 2).columns == 8);
-  // A desk, as floats have it.
+  // A desk, with rounding to float.
   for (const double w : {1.6, double(1.6f), double(4.4f) - double(2.8f)})
     for (const double h : {0.8, double(0.8f), double(2.56f) - double(1.76f)}) {
       CHECK(grid_shape(w, h).columns == 10);
@@ -107,9 +107,9 @@ TEST_CASE("mean, least and uniformity, with errors") {
   CHECK(s.most.value == 600);
   CHECK(s.uniformity.value == doctest::Approx(0.8));
   CHECK(s.uniformity.error == doctest::Approx(std::hypot(4.0, 0.8 * 4) / 500));
-  CHECK(std::abs(s.least_bias) < 0.5);  // no other comes near
+  CHECK(std::abs(s.least_bias) < 0.5);  // no other value comes near
   CHECK_FALSE(summary_of({}).has_values);
-  // Of n equal values with normal errors of 1 the least lies below by what order statistics say.
+  // The minimum of n equal values with normal errors of 1 follows order statistics.
   const GridSummary equal = summary_of(std::vector<Figure>(10, {100, 1}));
   CHECK(equal.least_bias == doctest::Approx(-1.5388).epsilon(0.06));
   CHECK(summary_of(std::vector<Figure>(10, {100, 0})).least_bias == 0);
@@ -126,7 +126,7 @@ TEST_CASE("isolines of a cone are circles, and close") {
   for (const Vec2d& p : lines[0])
     CHECK(std::hypot(p.x - 20.5, p.y - 20.5) == doctest::Approx(9.75).epsilon(0.005));
   CHECK(isolines(g, 200).empty());
-  // Missing values cut it open.
+  // Missing values open the line.
   g.values[20 * 41 + 30] = std::nan("");
   const std::vector<Line> open = isolines(g, 90.25);
   REQUIRE(open.size() == 1);
@@ -137,7 +137,7 @@ TEST_CASE("a saddle has two lines, joined by the value in its middle") {
   const ValueGrid low{2, 2, {1, 0, 0, 1}}, high{2, 2, {1, 0.3, 0.3, 1}};
   CHECK(isolines(low, 0.6).size() == 2);
   CHECK(isolines(high, 0.6).size() == 2);
-  // Round the low corners where the middle is high.
+  // With a high middle, the lines go around the low corners.
   for (const Line& l : isolines(high, 0.6)) {
     const Vec2d mid = (l[0] + l[1]) * 0.5;
     CHECK((mid.x - 1) * (mid.y - 1) < 0);

@@ -1,4 +1,4 @@
-// What stands in pages and tables, whatever names hold.
+// Names with any contents in pages and tables.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -40,12 +40,12 @@ TEST_CASE("names cannot leave the text they stand in") {
   CHECK(html_text("Büro 3, Ø") == "Büro 3, Ø");
   const std::string no = "\xef\xbf\xbd";
   CHECK(html_text(std::string("a\0b\x7f", 4)) == "a" + no + "b" + no);
-  CHECK(html_text("\xc3") == no);  // cut
+  CHECK(html_text("\xc3") == no);  // truncated
   CHECK(html_text("\xc0\xbc"
                   "script") == no + no + "script");  // overlong <
   CHECK(html_text("\xed\xa0\x80") == no + no + no);  // a surrogate
   CHECK(html_text("a\xe2\x80\xae"
-                  "b") == "a" + no + "b");  // turns the text
+                  "b") == "a" + no + "b");  // changes the text direction
   Random random(3);
   for (int i = 0; i < 2000; ++i) {
     std::string s;

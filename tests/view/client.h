@@ -1,4 +1,4 @@
-// A client for tests that says what it likes: bytes to a port, whatever comes back.
+// A test client that sends arbitrary bytes to a port and returns whatever comes back.
 #pragma once
 
 #include <arpa/inet.h>
@@ -18,7 +18,7 @@ class Client {
   explicit Client(uint16_t port, uint32_t host = INADDR_LOOPBACK)
       : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
     REQUIRE(socket_ >= 0);
-    const timeval limit{60, 0};  // against what never ends only
+    const timeval limit{60, 0};  // only against endless waiting
     setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof(limit));
     sockaddr_in address = {};
     address.sin_family = AF_INET;
@@ -32,7 +32,7 @@ class Client {
   Client& operator=(const Client&) = delete;
 
   bool is_connected() const { return is_connected_; }
-  // False where the other side has ended the connection.
+  // Returns false if the other side has ended the connection.
   bool send(const std::string& bytes) const {
     size_t sent = 0;
     while (sent < bytes.size()) {
@@ -42,7 +42,7 @@ class Client {
     }
     return true;
   }
-  // All that comes until the other side ends.
+  // Returns everything until the other side ends the connection.
   std::string rest() const {
     std::string all;
     char buffer[4096];
@@ -56,7 +56,7 @@ class Client {
   bool is_connected_ = false;
 };
 
-// The status of an answer; 0: there was none.
+// Returns the status of an answer; 0 if there was none.
 inline int status_of(const std::string& answer) {
   return answer.rfind("HTTP/1.1 ", 0) == 0 ? std::stoi(answer.substr(9)) : 0;
 }

@@ -1,6 +1,6 @@
 """The page of `troffer view` in headless Chromium:  page.py PROGRAM [FOLDER for screenshots]
 
-Ends with status 77, and says why, where Chromium, its driver or python3-selenium is not installed.
+Exits with status 77 and the reason if Chromium, its driver or python3-selenium is not installed.
 """
 import json
 import os
@@ -24,7 +24,7 @@ if not (os.path.exists(chromium) and os.path.exists(driver_path)):
     print("skipped: chromium and chromium-driver are not installed")
     sys.exit(77)
 
-patience = 600  # seconds, against what never ends only
+patience = 600  # seconds; only against endless waiting
 
 
 def start_browser():
@@ -38,7 +38,7 @@ def start_browser():
     from selenium.webdriver.chrome.service import Service
     try:
         browser = webdriver.Chrome(service=Service(driver_path), options=options)
-    except Exception as failure:  # the machine's, not the page's
+    except Exception as failure:  # a fault of the machine, not of the page
         print("skipped: Chromium does not start here:", str(failure)[:300])
         sys.exit(77)
     browser.set_script_timeout(patience)
@@ -46,7 +46,7 @@ def start_browser():
 
 
 class Page:
-    """The program and a page that shows what it serves."""
+    """The program and its page in a browser."""
 
     def __init__(self, program, arguments, browser):
         self.process = subprocess.Popen([program, "view"] + arguments, stdout=subprocess.PIPE, text=True)
@@ -74,13 +74,13 @@ class Page:
         return json.loads(self.get("state"))
 
     def set(self, name, value):
-        """As a user would: a new value, and the events that come with it."""
+        """Sets an input as a user would: a new value, and the events that come with it."""
         self.browser.execute_script("""const e = document.getElementById(arguments[0]);
           if (e.type === 'checkbox') e.checked = arguments[1]; else e.value = arguments[1];
           e.dispatchEvent(new Event('input')); e.dispatchEvent(new Event('change'));""", name, value)
 
     def drag(self, a, b, steps=4):
-        """Between places given as shares of the picture's sides."""
+        """Drags between places, given as shares of the picture's sides."""
         overlay = self.browser.find_element(By.ID, "overlay")
         width, height = overlay.size["width"], overlay.size["height"]
         def at(p):
@@ -96,7 +96,7 @@ class Page:
         self.browser.find_element(By.CSS_SELECTOR, f"input[name=tool][value={name}]").click()
 
     def mean(self):
-        """Of what the canvas shows."""
+        """Returns the mean of the canvas."""
         return self.js("""(() => { const c = document.getElementById('picture');
           const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; let sum = 0;
           for (let i = 0; i < d.length; ++i) if (i % 4 < 3) sum += d[i]; return sum / d.length; })()""")
@@ -154,7 +154,7 @@ def check_false_colours(page):
     page.set("levels", "1, 2, 3, 5, 8, 12, 20")
     page.set("lines", True)
     assert sum(page.js("app.lines").values()) > 20
-    # Without levels of the user's own: some that suit the scale, whatever that is.
+    # Without levels from the user, the page chooses levels that suit the scale.
     page.set("levels", "")
     for most in ("0.5", "5", "20"):
         page.set("most", most)
@@ -177,7 +177,7 @@ def check_false_colours(page):
 
 
 def check_pinch(page):
-    """Two fingers that part bring the camera nearer; one that stays down does not turn it."""
+    """Spreading two fingers brings the camera nearer; one that stays down does not turn it."""
     before = page.state()
     page.js("""(() => { const o = document.getElementById('overlay'), r = o.getBoundingClientRect();
       o.setPointerCapture = () => {};
@@ -213,7 +213,7 @@ def check_measuring(page):
     page.wait("measurements.all.length === 2 && measurements.all[1].rows")
     text = page.js("document.getElementById('measured').innerText")
     assert "uniformity" in text, text
-    # A dense grid shows what fits, and any value under the pointer.
+    # A dense grid shows as many values as fit, and the one under the pointer.
     page.set("along", "40")
     page.drag([0.35, 0.85], [0.6, 0.95])
     page.wait("measurements.all.length === 3 && measurements.all[2].rows")
@@ -239,7 +239,7 @@ def check_dimmers(page, lx):
     page.browser.find_elements(By.CSS_SELECTOR, ".dimmer input[type=checkbox]")[0].click()
     page.wait("currentPicture() !== null")
     print(f"first effect of a dimmer after {time.time() - began:.2f} s")
-    # The scale stays, so that a room whose main lamp goes off looks darker.
+    # The scale stays, so that the room looks darker when its main lamp goes off.
     page.set("show", "illuminance")
     assert page.js("app.map.most") == scale, (page.js("app.map.most"), scale)
     page.set("show", "picture")
@@ -247,7 +247,7 @@ def check_dimmers(page, lx):
     assert page.mean() < 0.9 * bright, (page.mean(), bright)
     less = page.js("measurements.values(measurements.all[0])[0][0]")
     assert less < lx, (less, lx)
-    # From here on nothing is rendered again: the layers that there are, weighted.
+    # Now nothing is rendered again: the page weights the existing layers.
     page.wait_done()
     versions, view = page.js("app.state.layers"), page.js("app.state.view")
     dark = page.mean()
@@ -257,7 +257,7 @@ def check_dimmers(page, lx):
     assert page.mean() < dark
     state = page.state()
     assert state["view"] == view and state["layers"] == versions
-    # A walk keeps the settings from its first picture on.
+    # While walking, the settings apply from the first picture on.
     page.tool("walk")
     page.browser.find_element(By.ID, "overlay").send_keys("w")
     page.wait("app.state.view > arguments[0] && app.state.layers.dimmed.view === app.state.view", view)
@@ -268,7 +268,7 @@ def check_dimmers(page, lx):
     page.tool("orbit")
     page.set("camera", "0")
     page.wait_done()
-    # All on again: the picture of all light.
+    # With all on again, the page shows the picture of all light.
     for e in page.browser.find_elements(By.CSS_SELECTOR, ".dimmer input[type=checkbox]")[:1]:
         e.click()
     page.js("""(() => { const e = document.querySelectorAll('.dimmer input[type=range]')[1];
@@ -307,7 +307,7 @@ def check_time(program, browser):
     page.wait_done()
     assert page.mean() > 5
     assert page.end() == 130
-    # The page says that the program is gone, how to start it again, and offers nothing else.
+    # The page reports the end of the program and how to restart it, and disables its controls.
     page.wait("!document.getElementById('ended').hidden")
     assert "troffer view" in page.js("document.getElementById('again').textContent")
     assert page.js("document.querySelector('aside').inert && document.getElementById('overlay').inert")

@@ -31,7 +31,7 @@ struct Server {
             limits) {}
 
   std::string host() const { return "127.0.0.1:" + std::to_string(server.port()); }
-  // The answer to a whole request, after which the connection is to end.
+  // Returns the answer to a whole request, after which the connection should end.
   std::string ask(const std::string& line, const std::string& more = {},
                   const std::string& body = {}) const {
     const Client client(server.port());
@@ -108,7 +108,7 @@ TEST_CASE("bodies and heads have bounds, methods are two") {
   CHECK(status_of(s.ask(post, "Content-Length: 99999999999999\r\n")) != 200);
   CHECK(status_of(s.ask(post, "Content-Length: -1\r\n")) != 200);
   CHECK(s.calls == 1);
-  // A body that tells no length, piece by piece.
+  // A body without a stated length, piece by piece.
   std::string pieces;
   for (int i = 0; i < 20; ++i) pieces += "64\r\n" + std::string(100, 'y') + "\r\n";
   CHECK(status_of(s.ask(post, "Transfer-Encoding: chunked\r\n", pieces + "0\r\n\r\n")) != 200);
@@ -195,7 +195,7 @@ TEST_CASE("so many connections at a time, and no more") {
     std::vector<std::unique_ptr<Client>> open;
     for (int i = 0; i < 40; ++i) open.push_back(std::make_unique<Client>(s.server.port()));
   }
-  // As they have gone, there is room.
+  // Once they are gone, there is room again.
   int status = 0;
   for (int i = 0; i < 1000 && status != 200; ++i) {
     status = status_of(s.ask("GET /" + token + "/state"));
@@ -206,7 +206,7 @@ TEST_CASE("so many connections at a time, and no more") {
 
 TEST_CASE("it listens on this machine's own address alone, and says where a port is taken") {
   Server s;
-  const Client other(s.server.port(), 0x7f000002);  // 127.0.0.2: this machine by another address
+  const Client other(s.server.port(), 0x7f000002);  // 127.0.0.2: another address of this machine
   CHECK(!other.is_connected());
   CHECK_THROWS_AS(
       HttpServer(s.server.port(), token, [](const HttpRequest&) { return HttpResponse(); }),

@@ -1,4 +1,4 @@
-// Pictures as they get finer, on a room in memory: the end of each layer against a rendering.
+// Progressive pictures of a room in memory: the final layers are compared with renderings.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -69,7 +69,7 @@ TEST_CASE("layers by single luminaires add up to the picture by all, after any m
   LayerBoard board;
   Painter painter(board, options(), nullptr);
   painter.show(request_of(lighting));
-  // Moves one after the other: each is shown, or the one after it is.
+  // Successive moves: each view, or a later one, gets a picture.
   ViewRequest request = request_of(lighting);
   uint64_t view = 0;
   for (int i = 0; i < 5; ++i) {
@@ -92,11 +92,11 @@ TEST_CASE("layers by single luminaires add up to the picture by all, after any m
   Image sum = dimmed_picture(board, {Rgb{1}, Rgb{0.999f}});
   CHECK(rms_difference(sum, whole) < 0.06);
   CHECK(mean_of(sum) == doctest::Approx(mean_of(whole)).epsilon(0.01));
-  // One light off is darker, by what it gives.
+  // With one light off the picture is darker by its contribution.
   CHECK(mean_of(dimmed_picture(board, {Rgb{1}, Rgb{0}})) < 0.8 * mean_of(whole));
   CHECK(rms_difference(board.get("second")->image, whole) < 0.2);
   CHECK(mean_of(board.get("second")->image) == doctest::Approx(mean_of(whole)).epsilon(0.01));
-  // The same picture as by a rendering of its own.
+  // The same picture as by a separate rendering.
   RenderOptions o = options();
   o.width = 48;
   o.height = 36;
@@ -119,7 +119,7 @@ TEST_CASE("under set dimmers the first picture after a move shows the settings")
   const double expected = mean_of(dimmed_picture(board, {Rgb{1}, Rgb{0}}));
   CHECK(expected < 0.8 * mean_of(board.get("whole")->image));
   CHECK(mean_of(board.get("dimmed")->image) == doctest::Approx(expected).epsilon(0.1));
-  // Other settings of a view whose layers are there: the page adds them up, nothing is rendered.
+  // With all layers present, the page adds up new settings itself and nothing is rendered.
   const uint64_t version = board.get("dimmed")->version;
   painter.set_extras({{Rgb{1}, Rgb{0.5f}}, std::nullopt});
   request.camera.position.x += 0.1f;
@@ -217,5 +217,6 @@ TEST_CASE("points are measured in the background, whole and by single luminaires
   }
   CHECK(!desk.answer(999));
   CHECK_THROWS_AS(desk.add({lighting, {}, false}), UsageError);
-  desk.add({lighting, std::vector<MeasuringPoint>(5000, points[0]), false});  // left half done
+  // still unfinished at the end
+  desk.add({lighting, std::vector<MeasuringPoint>(5000, points[0]), false});
 }

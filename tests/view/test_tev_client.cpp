@@ -1,4 +1,4 @@
-// Packets as tev reads them, taken apart by a server that stands for it.
+// Packets as tev reads them, parsed by a server in its place.
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
 #include <netinet/in.h>
@@ -36,7 +36,7 @@ class Listener {
   int socket_;
 };
 
-// The rest of a packet after its length.
+// A packet after its length.
 struct Packet {
   std::string bytes;
   size_t at = 0;

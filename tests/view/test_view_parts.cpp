@@ -1,4 +1,4 @@
-// What pages ask for is checked; sums over luminaires; grids; passes and their mean.
+// Validation of the page's requests, sums over luminaires, grids, passes and their mean.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -80,10 +80,10 @@ TEST_CASE("measurements by single luminaires add up, their errors as independent
   m = dimmed_measurements(a, {Rgb{0.5f}, Rgb{0}});
   CHECK(m[0].illuminance_lx == doctest::Approx(150));
   CHECK(m[0].standard_error == doctest::Approx(2));
-  // Red light through a blue filter.
+  // Red light under a blue setting.
   m = dimmed_measurements(a, {Rgb{0}, Rgb{0, 0, 1}});
   CHECK(m[0].illuminance_lx == 0);
-  a.values.resize(1);  // by all light together
+  a.values.resize(1);  // measured under all light
   CHECK(dimmed_measurements(a, {Rgb{0.5f}, Rgb{1}})[0].illuminance_lx == doctest::Approx(300));
   const std::string csv = measurements_csv({{{1, 2, 3}, {0, 0, 1}}}, a.values[0]);
   CHECK(csv.find("\n1,2,3,0,0,1,3,3,3,300,4\n") != csv.npos);
@@ -98,7 +98,8 @@ TEST_CASE("pictures by single luminaires add up; where one is missing there is n
   CHECK_THROWS_AS(dimmed_picture(board, {Rgb{1}, Rgb{0}}), UsageError);
   board.put("dimmer0", Image(2, 1, Rgb{2}), 7, 0);
   board.put("dimmer1", Image(2, 1, Rgb{3}), 6, 0);
-  CHECK_THROWS_AS(dimmed_picture(board, {Rgb{1}, Rgb{0}}), UsageError);  // of the view before
+  // a layer of the previous view
+  CHECK_THROWS_AS(dimmed_picture(board, {Rgb{1}, Rgb{0}}), UsageError);
   board.put("dimmer1", Image(2, 1, Rgb{3}), 7, 0);
   CHECK(dimmed_picture(board, {Rgb{1}, Rgb{0.5f, 0, 0}}).at(0, 0).r == 3.5f);
   CHECK(dimmed_picture(board, {Rgb{1}, Rgb{0.5f, 0, 0}}).at(0, 0).g == 2);
@@ -114,7 +115,7 @@ TEST_CASE("a grid fills its rectangle with nearly square fields") {
   CHECK(g.points[0].position.y == doctest::Approx(0.25));
   CHECK(g.points[31].position.x == doctest::Approx(3.75));
   for (const MeasuringPoint& p : g.points) CHECK(p.position.z == doctest::Approx(1));
-  // On a wall its sides are level and upright.
+  // On a wall the sides are level and vertical.
   const MeasuringGrid wall = grid_between({{0, 3, 0}, {0, -1, 0}}, {2, 3, 4}, {0, 0, 1}, 4);
   CHECK(wall.points.size() == 8);
   CHECK(wall.width == doctest::Approx(2));
@@ -172,7 +173,7 @@ TEST_CASE("passes get finer, to what is asked; others take more samples") {
 TEST_CASE("the mean of passes is weighted, and so is its error") {
   PassMean mean;
   mean.add(Image(1, 1, Rgb{9}), Image(1, 1, Rgb{1}), 1);
-  mean.add(Image(2, 2, Rgb{1}), Image(2, 2, Rgb{0.3f}), 1);  // of another size: from here on
+  mean.add(Image(2, 2, Rgb{1}), Image(2, 2, Rgb{0.3f}), 1);  // another size starts again
   mean.add(Image(2, 2, Rgb{2}), Image(2, 2, Rgb{0.1f}), 3);
   CHECK(mean.mean().at(1, 1).r == doctest::Approx(1.75));
   CHECK(mean.error().at(0, 0).r == doctest::Approx(std::sqrt(0.09 + 0.09) / 4));

@@ -1,4 +1,4 @@
-"""The crop under the table by fixed, kj92 and certified at equal time, beside the converged one."""
+"""Renders the crop under the table by fixed, kj92 and certified at equal time, and converged."""
 
 import argparse
 import csv
@@ -11,18 +11,20 @@ from differences import difference
 from program import Program
 
 ROOM = "scenes/kj92room/kj92room.gltf"
-# The floor at the left back leg of the table, as the experiments of 1992 show it; source D alone.
+# The floor at the left back leg of the table, as in the experiments of 1992; only source D is
+# sampled.
 VIEW = ("--eye 0.7,1.9,0.66 --target 1.38,2.95,0.05 --up 0,0,1 --fov 45 --size 256x256 "
         "--light emitter0 --indirect none")
 LIGHT = "--light emitter0"
-DETAIL = (80, 96, 144, 160)  # of the picture, magnified in the second row: x0, y0, x1, y1
+DETAIL = (80, 96, 144, 160)  # magnified part of the picture, shown in the second row: x0, y0, x1,
+                             # y1
 
 FILE = "equal-time"
 HEADER = ["method", "options", "processor s", "viewing rays", "shadow rays", "relative rmse"]
 
 
 def candidates(solution):
-    """{method: options}; of each the best that takes no longer than certified is shown."""
+    """Returns {method: options}; the best of each that takes no longer than certified is shown."""
     fixed = [f"--spp {spp} --shadow-rays {n}" for spp in (1, 2, 4) for n in (1, 2, 4, 8, 16, 32)]
     kj92 = [f"--spp {spp} --variance {v:g} --shadow-rays {n} --solution {solution}"
             for spp in (1, 2, 4) for v in (0.05, 0.1, 0.2, 0.5) for n in (4, 8, 16)]
@@ -34,7 +36,7 @@ def seconds(run):
 
 
 def best_of(runs, allowed, reference):
-    """The run of least error within the allowed time; the quickest where all take longer."""
+    """Returns the run with the least error within the allowed time; the fastest if all take longer."""
     inside = [r for r in runs if seconds(r) <= allowed]
     if not inside:
         return min(runs, key=seconds)
@@ -50,7 +52,7 @@ def arguments():
 
 
 def render_all(program):
-    """{caption: (run, options)} in the order of the panels, and the reference."""
+    """Returns {caption: (run, options)} in the order of the panels, and the reference."""
     program.planned = 2
     converged = program.render("converged", ROOM,
                                f"{VIEW} --method fixed --spp 256 --shadow-rays 64 --seed 1")
@@ -79,7 +81,7 @@ def main():
     rows = []
     for method, run in runs.items():
         error = difference(run.picture, reference).relative_rmse
-        # The converged picture was rendered on all cores, and its error is not known.
+        # The converged picture was rendered on all cores, and its error is unknown.
         is_known = method != "converged"
         rows.append([method, run.options, round(seconds(run), 3), run.stats["viewing_rays"],
                      run.stats["shadow_rays"], f"{error:.5f}" if is_known else ""])

@@ -1,4 +1,4 @@
-"""Pictures side by side, each above a magnified part of it, with captions."""
+"""Draws pictures side by side, each above a magnified part of it, with captions."""
 
 import matplotlib
 
@@ -15,7 +15,7 @@ DPI = 100
 
 
 def _magnified(picture, side):
-    """Whole pixels, so that noise stays what it is."""
+    """Repeats whole pixels, so that noise is not smoothed."""
     k = side // picture.shape[0]
     return np.repeat(np.repeat(picture, k, axis=0), k, axis=1)
 

@@ -1,4 +1,4 @@
-"""The default beside path tracing at equal processor time, on interiors, with told and made error."""
+"""Compares the default with path tracing at equal processor time, with estimated and actual errors."""
 
 import argparse
 import os
@@ -11,11 +11,11 @@ from PIL import Image
 from program import Program
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
-# From coarse to fine.
+# from coarse to fine
 SETTINGS = ["--error .4 --spp 1 --max-spp 4", "--error .2 --spp 2 --max-spp 8", "--error .1", "--error .05",
             "--error .02"]
 USUAL = 2
-CROPS, CROP_SIDE, CROP_PATHS = 24, 32, 256  # of the reference: of each half, paths per pixel
+CROPS, CROP_SIDE, CROP_PATHS = 24, 32, 256  # of the reference; paths per pixel of each half
 MOST_BYTES = 390_000
 
 
@@ -68,7 +68,7 @@ def timed(program, room, name, options, size):
 
 
 def finest_in_time(program, room, size, limit):
-    """The picture by the finest setting that keeps the limit, or by the coarsest of all."""
+    """Renders with the finest setting that keeps the limit, or with the coarsest of all."""
     def run(k):
         return timed(program, room, f"{room.name}-{k}", f"{SETTINGS[k]} --aov error", size)
 
@@ -85,7 +85,7 @@ def finest_in_time(program, room, size, limit):
 
 
 def paths_in_time(program, room, size, seconds):
-    """By as many paths a pixel as take the processor time of the other picture."""
+    """Renders with as many paths a pixel as take the processor time of the other picture."""
     trial = timed(program, room, f"{room.name}-trial", "--method path --spp 1 --max-spp 1", size)
     render = trial.stats["seconds"]["render_cpu"]
     spp = max(1, round((seconds - (trial.cpu - render)) / render))
@@ -94,7 +94,7 @@ def paths_in_time(program, room, size, seconds):
 
 
 def crops(size):
-    """Windows all over the picture: a Halton sequence of corners."""
+    """Yields windows spread over the picture: a Halton sequence of corners."""
     width, height = (int(n) for n in size.split("x"))
 
     def radical_inverse(i, base):
@@ -111,7 +111,7 @@ def crops(size):
 
 
 def reference(program, room, size):
-    """Two halves, of the crops side by side: luminances."""
+    """Returns two halves: luminances of the crops side by side."""
     halves = []
     for seed in (101, 102):
         parts = []
@@ -128,8 +128,8 @@ def reference(program, room, size):
 
 
 def errors(run, size, a, b):
-    """Made and told, root mean squares over the mean; what is far brighter than the rest (lights) is
-    left out of both. The noise of one half meets nothing in the other that it goes with."""
+    """Returns actual and estimated errors, root mean squares over the mean. Far brighter pixels (lights)
+    are left out of both. The noise of the two halves is independent, so it averages out."""
     cut = [np.s_[y0:y1, x0:x1] for x0, y0, x1, y1 in crops(size)]
     picture = np.concatenate([run.picture[c] @ LUMINANCE for c in cut], axis=1)
     error = np.concatenate([run.layers["error"][..., 0][c] for c in cut], axis=1)
@@ -140,9 +140,9 @@ def errors(run, size, a, b):
 
 
 def save(run, path, exposure):
-    """A JPEG of as many bytes as a page can bear."""
+    """Writes a JPEG of at most MOST_BYTES."""
     linear = np.maximum(np.nan_to_num(run.picture.astype(np.float64)), 0) * exposure
-    # A curve that keeps mid-grey and bends towards white.
+    # A curve that keeps mid-grey and compresses highlights.
     shown = linear * (1 + linear / 16) / (1 + linear * (1 - 1 / 16) * 0.25)
     c = np.clip(shown, 0, 1)
     srgb = np.where(c <= 0.0031308, 12.92 * c, 1.055 * np.power(c, 1 / 2.4) - 0.055)
@@ -187,7 +187,7 @@ def main():
         a, b = reference(program, room, options.size)
         rows.append((room, SETTINGS[k], mine, path, spp, errors(mine, options.size, a, b),
                      errors(path, options.size, a, b)))
-        # So that the middle pixel is mid-grey.
+        # Makes the median pixel mid-grey.
         middle = np.median(mine.picture @ LUMINANCE)
         exposure = 0.18 / max(float(middle), 1e-30)
         for run, name in ((mine, room.name), (path, f"{room.name}-path")):

@@ -1,4 +1,4 @@
-"""The experiments as data: what is rendered, and which function makes figures of it."""
+"""The experiments as data: their renders, and the functions that make figures of these."""
 
 from dataclasses import dataclass, field
 
@@ -27,7 +27,7 @@ class Experiment:
 
 
 def _crop(s):
-    """Renders of the paper's crop: source D alone is sampled, all four emit."""
+    """Returns renders of the paper's crop: only source D is sampled, all four emit."""
     common = f"--size {s.size} {CROP_CAMERA} --method kj92 --select {SOURCE_D}"
     layers = "--aov shadow_rays,sources,direct,indirect,position,normal,albedo"
 
@@ -61,7 +61,7 @@ def _crop(s):
 
 
 def _room(s):
-    """The whole room, all four sources."""
+    """Returns renders of the whole room with all four sources."""
     layers = "--aov shadow_rays,sources,direct,indirect"
     view = f"--size {s.size} --method kj92"
     return [
@@ -73,7 +73,7 @@ def _room(s):
 
 
 def _selection(s):
-    """Direct light only, so that rays to bright patches do not count and the truth is known."""
+    """Returns renders of direct light only: no rays go to bright patches, and the truth is known."""
     renders = []
     for scene, place, size in SELECTION_SCENES:
         view = f"--size {getattr(s, size)} --spp 4 --indirect none"

@@ -1,4 +1,4 @@
-"""Figures 8 and 9, and the paper's claims about coherence."""
+"""Makes figures 8 and 9, and checks the paper's claims about coherence."""
 
 import numpy as np
 

@@ -1,5 +1,5 @@
-"""The paper's crop, looked at: where source D is sampled, how much of it each point sees, and how
-far every picture is from the norm, from a converged reference, and in D's light alone."""
+"""Analyses the paper's crop: where source D is sampled, its visible share at each point, and the
+errors of every picture to the norm, to a converged reference, and in D's light alone."""
 
 import math
 from dataclasses import dataclass
@@ -9,28 +9,28 @@ import numpy as np
 import differences
 from settings import sweep_name
 
-# Source D of scenes/kj92room: corner, edges (u × v is where it shines), radiance.
+# Source D of scenes/kj92room: corner, edges (it emits toward u × v), radiance.
 D_CORNER, D_U, D_V, D_RADIANCE = (1.25, 0.95, 2.99), (0, 1.5, 0), (1.5, 0, 0), 4.0
 
 
 @dataclass
 class Point:
-    """One rendering of the crop, measured."""
+    """Measurements of one rendering of the crop."""
 
     method: str
-    variance: float  # allowed; NaN for fixed rays
-    rays: float  # shadow rays per viewing ray, the picture's mean
-    rays_floor: float  # the same on the floor, where D is sampled
-    norm: differences.Difference  # from the norm picture (figure 7c)
-    reference: differences.Difference  # from the converged reference
-    shadow_error: float  # rmse of D's direct light on the floor, over its mean unoccluded
+    variance: float  # allowed variance; NaN for fixed rays
+    rays: float  # shadow rays per viewing ray, mean over the picture
+    rays_floor: float  # the same over the floor, where D is sampled
+    norm: differences.Difference  # to the norm picture (figure 7c)
+    reference: differences.Difference  # to the converged reference
+    shadow_error: float  # RMSE of D's direct light on the floor, over its mean unoccluded light
     shadow_bias: float  # mean error of the same
-    seconds: float  # wall, of rendering alone
+    seconds: float  # wall seconds of rendering alone
     cpu: float  # processor seconds of the whole process
 
 
 class Crop:
-    """`mask`: pixels all of whose viewing rays meet the floor and sample D there."""
+    """`mask`: pixels whose viewing rays all hit the floor and sample D there."""
 
     def __init__(self, context):
         runs = context.runs
@@ -42,8 +42,8 @@ class Crop:
             raise SystemExit("error: fixed and kj92 do not cast the same viewing rays")
         is_floor = (layers["normal"][..., 2] == 1) & (np.abs(layers["position"][..., 2]) < 1e-4)
         self.mask = is_floor & (layers["sources"][..., 0] == 1)
-        # The layer `direct` of kj92 holds the other three sources' light too, interpolated. It is
-        # smooth on the floor: what remains of many rays' noise in it is averaged away.
+        # kj92's layer `direct` also holds the other three sources' light, interpolated. It is
+        # smooth on the floor, so its remaining noise is averaged away.
         fine = runs["crop-fine"].layers["direct"]
         self.others = differences.smooth(fine - self.exact, self.mask, 4)
         self.unoccluded, self.solid_angle = self._unoccluded(layers)
@@ -73,11 +73,11 @@ class Crop:
                 angle.reshape(shape[:2]))
 
     def direct(self, run, is_fixed):
-        """D's direct light; to be looked at within the mask."""
+        """Returns D's direct light; valid within the mask."""
         return run.layers["direct"] - (0 if is_fixed else self.others)
 
     def picture(self, run, is_fixed):
-        """`fixed` knows D's direct light only: it is set into the norm picture, within the mask."""
+        """Returns the picture. `fixed` has only D's direct light, which replaces that of the norm."""
         if not is_fixed:
             return run.picture
         norm = self.norm
@@ -96,12 +96,12 @@ class Crop:
                      run.stats["seconds"]["render"], run.cpu)
 
     def error_in(self, region, run, is_fixed=False):
-        """The shadow error over one of the regions alone."""
+        """Returns the shadow error over one of the regions alone."""
         error = (self.direct(run, is_fixed) - self.exact)[self.regions()[region]]
         return math.sqrt((error.astype(np.float64)**2).mean()) / self.unoccluded_mean
 
     def regions(self):
-        """{name: mask} of what the points of the floor see of D."""
+        """Returns {name: mask}, by how much the points of the floor see of D."""
         v = self.visible_share
         return {"umbra": self.mask & (v < 0.002),
                 "penumbra": self.mask & (v >= 0.002) & (v <= 0.99),

@@ -17,13 +17,13 @@ TITLE = "Adaptive sampling of area light sources: the experiments of 1992, done 
 
 @dataclass
 class Context:
-    """What the functions that make figures are given."""
+    """Input of the functions that make figures."""
 
     settings: settings.Settings
     program: program.Program
     out: str
     runs: dict = field(default_factory=dict)  # by name of the render
-    kept: dict = field(default_factory=dict)  # what figures share, by name
+    kept: dict = field(default_factory=dict)  # values that figures share, by name
 
     def path(self, file):
         return f"{self.out}/{file}"

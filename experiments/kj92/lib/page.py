@@ -1,4 +1,4 @@
-"""The page: one HTML file, pictures inside, and its short Markdown sister."""
+"""Writes the page: one HTML file with embedded pictures, and a shorter Markdown version."""
 
 import base64
 import csv
@@ -29,7 +29,7 @@ code { font-size: .85em } details { margin: .8rem 0 } summary { cursor: pointer 
 class Picture:
     file: str  # in the output folder
     caption: str
-    width: int = 0  # shown width in pixels; 0: its own
+    width: int = 0  # shown width in pixels; 0: the picture's own
 
 
 @dataclass
@@ -45,7 +45,7 @@ class Section:
     text: list  # paragraphs; `code` between backquotes
     pictures: list = field(default_factory=list)
     tables: list = field(default_factory=list)
-    commands: list = field(default_factory=list)  # beside those of the renders
+    commands: list = field(default_factory=list)  # in addition to those of the renders
 
 
 def shown(value):
@@ -63,7 +63,7 @@ def write_csv(out, table):
 
 
 def _inline(text):
-    """The Markdown that the texts use: `code`, **strong**, *emphasis*."""
+    """Converts the Markdown in texts: `code`, **strong**, *emphasis*."""
     text = re.sub(r"`([^`]*)`", r"<code>\1</code>", html.escape(text, quote=False))
     text = re.sub(r"\*\*([^*]+)\*\*", r"<strong>\1</strong>", text)
     return re.sub(r"\*([^*]+)\*", r"<em>\1</em>", text)
@@ -126,7 +126,7 @@ def write_markdown(out, title, introduction, sections):
         lines += [f"## {experiment.title}", ""]
         for p in s.text:
             lines += [p, ""]
-        # Several pictures stand beside each other, as files that may be looked at alone.
+        # Several pictures appear side by side, as separate files.
         row = " ".join(f"![{p.caption.replace('`', '')}]({p.file})" for p in s.pictures)
         lines += [row, ""] if row else []
         tables = ", ".join(f"[{t.file}]({t.file})" for t in s.tables)
@@ -136,7 +136,7 @@ def write_markdown(out, title, introduction, sections):
 
 
 def files_of(sections):
-    """Names of all files that belong to the page."""
+    """Returns the names of all files that belong to the page."""
     files = ["index.html", "README.md"]
     for _, s in sections:
         files += [p.file for p in s.pictures] + [t.file for t in s.tables]

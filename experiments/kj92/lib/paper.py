@@ -1,4 +1,4 @@
-"""Figures 4, 5, 7 and table 1 of the paper."""
+"""Makes figures 4, 5, 7 and table 1 of the paper."""
 
 import csv
 
@@ -81,7 +81,7 @@ def figure7(context):
         pictures.append(Picture(f"figure7{letter}.png", f"({letter}) {caption}", 320))
         error = (run.picture - crop.reference.picture).mean(axis=-1)
         file = f"figure7{letter}-error.png"
-        # 0.05 of the mean becomes the whole range from grey to black or white
+        # 0.05 of the mean spans the range from grey to black or white
         plots.grey(context.path(file), 0.5 + error / crop.reference.picture.mean() * 10)
         errors.append(Picture(file, f"({letter}) minus converged: white +5 %, black −5 %", 320))
         p = crop.point(run, letter)

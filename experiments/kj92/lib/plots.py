@@ -1,4 +1,4 @@
-"""Curves and maps, drawn with matplotlib."""
+"""Draws curves and maps with matplotlib."""
 
 import matplotlib
 
@@ -26,8 +26,8 @@ def _ticks(axis, values):
 
 
 def two_axes(path, x, left, right, x_label, left_label, right_label, limits):
-    """One curve on each of two vertical axes over the allowed variance, as figure 8 has it.
-    limits: (top of the left axis, top of the right axis), so that two plots can be compared."""
+    """Draws one curve on each of two vertical axes over the allowed variance, as in figure 8.
+    limits: (top of the left axis, top of the right axis), to make two plots comparable."""
     figure, axes = plt.subplots(figsize=(4.8, 3.4))
     a = axes.plot(x, left, "o-", ms=3.5, color="#34495e", label=left_label)
     axes.set(xscale="log", xlabel=x_label, ylabel=left_label, ylim=(0, limits[0]))
@@ -44,7 +44,7 @@ def two_axes(path, x, left, right, x_label, left_label, right_label, limits):
 
 
 def _few_ticks(axis, values):
-    """1, 2, 5 of every decade about the values."""
+    """Sets ticks at 1, 2, 5 of every decade around the values."""
     low, high = np.floor(np.log10(min(values))), np.ceil(np.log10(max(values)))
     ticks = [m * 10.0**e for e in np.arange(low, high + 1) for m in (1, 2, 5)]
     _ticks(axis, [t for t in ticks if min(values) / 2 <= t <= max(values) * 2])
@@ -73,14 +73,14 @@ def grey(path, values):
 
 
 def ray_map(path, rays):
-    """Figure 9's grey: black where there are no rays, dark grey at 8, white from 32 on."""
+    """Uses figure 9's greys: black for no rays, dark grey for 8, white from 32 on."""
     dark = 0.25
     shade = np.where(rays < 8, rays / 8 * dark, dark + (rays - 8) / 24 * (1 - dark))
     grey(path, shade)
 
 
 def signed_map(path, values, limit, label, width=5.6):
-    """Blue: too dark; red: too bright; white: equal. With a scale."""
+    """Draws blue for too dark, red for too bright, white for equal, with a scale."""
     height = width * values.shape[0] / values.shape[1] * 0.84
     figure, axes = plt.subplots(figsize=(width, height))
     colours = LinearSegmentedColormap.from_list("signed", ["#1a3a8a", "#ffffff", "#a01010"])

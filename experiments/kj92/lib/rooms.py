@@ -1,4 +1,4 @@
-"""Whole rooms: figure 6, the reference, selection, refinement, the halls."""
+"""Makes figures of whole rooms: figure 6, the reference, selection, refinement, the halls."""
 
 import math
 
@@ -117,7 +117,7 @@ def selection(context):
 
 
 def _treated(rows):
-    """What the selection of one scene comes to."""
+    """Summarizes the selection of one scene."""
     off, on = ([r for r in rows if r[1] == which] for which in ("off", "on"))
     widest = max(r[2] for r in rows)
     bias = {r[1]: r[8] for r in rows if r[2] == widest}
@@ -127,7 +127,7 @@ def _treated(rows):
 
 
 def _saved(scene, series):
-    """Rays with and without selection at equal difference."""
+    """Returns rays with and without selection at equal difference."""
     off, on = series["selection off"], series["selection on"]
     ratios = [(r, at_equal(e, off[1], off[0])) for r, e in zip(*on)]
     found = [(r, o) for r, o in ratios if not math.isnan(o)]

@@ -1,30 +1,30 @@
-"""Scenes, cameras and amounts, for the catalogue and for those who read its pictures."""
+"""Scenes, cameras and sizes, for the catalogue and for analyses of its pictures."""
 
 from dataclasses import dataclass
 
 ROOM = "scenes/kj92room/kj92room.gltf"
 HALL = "scenes/modern-hall/modern-hall.gltf"
 DIFFUSE_HALL = "scenes/modern-hall/modern-hall-diffuse.pbrt"
-# By pbrt-v4: 256 × 256, 8192 paths a pixel; the same, direct light only, 2048; 320 × 240, 2048.
+# By pbrt-v4: 256 × 256, 8192 paths a pixel; the same with direct light only, 2048; 320 × 240, 2048.
 ROOM_REFERENCE = "scenes/references/kj92room_full.exr"
 ROOM_DIRECT_REFERENCE = "scenes/references/kj92room_direct.exr"
 DIFFUSE_HALL_REFERENCE = "scenes/references/modern-hall-diffuse.exr"
 
-# The floor at the left back leg of the table, seen from the left and the front.
+# The floor at the left back leg of the table, seen from the front left.
 CROP_CAMERA = "--eye 0.7,1.9,0.66 --target 1.38,2.95,0.05 --up 0,0,1 --fov 45"
 # Preprocessings that several pictures share: scene, options.
 SOLUTIONS = {"kj92room": (ROOM, "")}
-# Where selection is tried: name, scene, which of the sizes below.
+# Scenes for selection: name, scene, which of the sizes below.
 SELECTION_SCENES = (("kj92room", ROOM, "size"), ("modern-hall", HALL, "small_hall_size"),
                     ("modern-hall-diffuse", DIFFUSE_HALL, "small_hall_size"))
 SOURCE_D = "emitter0"
-NO_SECOND_STOP_VARIANCE = 0.03  # where coherence is tried without the second stop
+NO_SECOND_STOP_VARIANCE = 0.03  # for coherence without the second stop
 FIGURE_VARIANCE = 0.07  # of figures 7d and 9
 
 
 @dataclass
 class Settings:
-    """How much is computed; `quick` is a try of the machinery."""
+    """Amounts of computation; `quick` only tries the machinery."""
 
     size: str = "256x256"
     room_size: str = "512x512"

@@ -1,4 +1,4 @@
-"""A room for balls of one material each (pbrt-v4), and how they get materials of glTF."""
+"""A room for balls of one material each (pbrt-v4), and a way to give them glTF materials."""
 import json
 import os
 import subprocess
@@ -47,7 +47,7 @@ AttributeEnd
 
 
 def scene(balls, size, fov, columns, far):
-    """balls: [(name, pbrt's lines)], in rows of so many columns; far: y of the first row."""
+    """balls: [(name, pbrt's lines)], in rows of `columns`; far: y of the first row."""
     text = FILM.format(*size) + VIEW.format(fov) + WORLD
     for i, (name, material) in enumerate(balls):
         x, row = i % columns - (columns - 1) / 2, i // columns
@@ -57,7 +57,7 @@ def scene(balls, size, fov, columns, far):
 
 
 def plain(names):
-    """Balls that `with_materials` dresses; with a texture, so that they have texture coordinates."""
+    """Balls for `with_materials`, with a texture so that they have texture coordinates."""
     return [(name, f'MakeNamedMaterial "{name}" "string type" "diffuse" "texture reflectance" "checks"\n'
              f'NamedMaterial "{name}"') for name in names]
 
@@ -70,8 +70,8 @@ def _with_textures(part, number_of):
 
 
 def with_materials(program, file, materials, images=None):
-    """The pbrt file as glTF, its named materials replaced: {name: what glTF has for it}. images: {name:
-    data URI}; textures' `index` may be such a name."""
+    """Converts the pbrt file to glTF and replaces its named materials: {name: material in glTF}. images:
+    {name: data URI}; a texture's `index` may be such a name."""
     gltf = os.path.splitext(file)[0] + ".gltf"
     subprocess.run([program, "convert", file, gltf], check=True, stdout=subprocess.DEVNULL,
                    stderr=subprocess.DEVNULL)  # spheres become triangles

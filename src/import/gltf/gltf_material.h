@@ -1,5 +1,5 @@
 // Conversion of glTF materials and their textures to materials of the scene. gltf.cpp asks for each
-// material by index; docs/formats.md lists what becomes of each extension.
+// material by index; docs/reference/formats.md lists what becomes of each extension.
 // References: [1] Khronos, glTF 2.0 Specification, §3.9 (Materials), §3.8 (Texture Data), and its
 //   extensions KHR_materials_specular, _ior, _transmission, _volume, _emissive_strength,
 //   _clearcoat, _pbrSpecularGlossiness, KHR_texture_transform.

@@ -1,6 +1,6 @@
 // Instancing of meshes that a file places many times: a mesh is stored once if that saves memory
 // without slowing rays. Importers (glTF, pbrt, Mitsuba) offer each placement to
-// MeshInstancer::place and copy the mesh if it declines. docs/formats.md#instances lists the rules.
+// MeshInstancer::place and copy the mesh if it declines. docs/reference/formats.md#instances lists the rules.
 #pragma once
 
 #include <compare>

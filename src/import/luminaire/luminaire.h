@@ -1,6 +1,6 @@
 // Photometric files of luminaires: IES LM-63 and EULUMDAT. A Luminaire holds the photometric web
 // (cd), the luminous opening (m) and the lamps' data. attach_luminaire.h puts it into a scene.
-// docs/luminaires.md describes both from the user's side.
+// docs/reference/luminaires.md describes both from the user's side.
 //
 // References: [1] ANSI/IES LM-63-19 and its editions of 1986 to 2002, "Standard file format for the
 //   electronic transfer of photometric data".

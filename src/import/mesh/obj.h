@@ -1,5 +1,5 @@
 // Importer of Wavefront OBJ files with their MTL material libraries. Positions keep the file's
-// units; emission is in W/(m² sr). docs/formats.md lists the statements.
+// units; emission is in W/(m² sr). docs/reference/formats.md lists the statements.
 //
 // References: [1] Wavefront Technologies, "Advanced Visualizer Manual", Appendix B1 (object files)
 //   and "MTL material format", 1995.

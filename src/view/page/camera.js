@@ -1,4 +1,4 @@
-// Where one stands: orbit, walk, and where points of the room are in the picture.
+// The camera of the page: orbits, walks, and projects points of the room into the picture.
 'use strict';
 
 const add = (a, b, s = 1) => a.map((v, i) => v + s * b[i]);
@@ -7,7 +7,7 @@ const scaled = (a, s) => a.map((v) => v * s);
 const lengthOf = (a) => Math.hypot(...a);
 const unit = (a) => scaled(a, 1 / (lengthOf(a) || 1));
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-// Rotated about a unit axis (Rodrigues).
+// Rotates v about a unit axis (Rodrigues).
 function rotated(v, axis, angle) {
   const c = Math.cos(angle), s = Math.sin(angle);
   return add(add(scaled(v, c), cross(axis, v), s), axis, dot(axis, v) * (1 - c));
@@ -19,14 +19,14 @@ class RoomCamera {
     this.worldUp = unit(worldUp);
     const middle = bounds ? scaled(add(bounds[0], bounds[1]), 0.5) : add(this.eye, this.forward);
     const size = bounds ? lengthOf(add(bounds[1], bounds[0], -1)) : 1;
-    // Distance of the pivot for orbits: as far ahead as the middle of the room.
+    // Distance of the orbit's pivot: as far ahead as the middle of the room.
     this.reach = Math.max(dot(add(middle, this.eye, -1), this.forward), 0.05 * size);
     this.size = size;
   }
   get right() { return scaled(unit(cross(this.forward, this.up)), this.hand); }
   get pivot() { return add(this.eye, this.forward, this.reach); }
 
-  // By angles in radians: to the right, and up. Not over the top.
+  // Turns by angles in radians, to the right and up. Stops before the zenith.
   turn(yaw, pitch) {
     const level = dot(this.forward, this.worldUp);
     const now = Math.asin(Math.max(-1, Math.min(1, level))), most = 1.5;
@@ -42,7 +42,7 @@ class RoomCamera {
     this.turn(yaw, pitch);
     this.eye = add(pivot, this.forward, -this.reach);
   }
-  // Along right, up and forward, metres.
+  // Moves along right, up and forward; metres.
   walk(right, up, forward) {
     this.eye = add(add(add(this.eye, this.right, right), this.worldUp, up), this.forward, forward);
   }
@@ -52,14 +52,15 @@ class RoomCamera {
     this.reach = Math.max(this.reach - step, 0.02 * this.size);
   }
 
-  // The image plane at distance 1: [x0, x1, y0, y1] from left to right and from the bottom up.
+  // Rectangle of the image plane at distance 1: [x0, x1, y0, y1], left to right and bottom to top.
   plane(aspect) {
     const h = this.half_extent;
     if (this.window) return this.window.map((v) => v * h);
     return this.is_vertical || aspect >= 1 ? [-aspect * h, aspect * h, -h, h]
       : [-h, h, -h / aspect, h / aspect];
   }
-  // Where a point is in the picture, in shares of its sides from the top left; null: behind one.
+  // Projects a point into the picture: shares of its sides from the top left; null if it is behind
+  // the camera.
   project(p, aspect) {
     const d = add(p, this.eye, -1), along = dot(d, this.forward);
     if (this.is_perspective && along < 1e-6) return null;

@@ -1,7 +1,7 @@
-// Luminaires and the time of day: what the panel is made of, and what it sends.
+// Controls for luminaires and the time of day, and the messages that they send.
 'use strict';
 
-// Shows a change at once where the layers are there. The program gets the newest settings, one
+// Shows a change at once if the layers are loaded. The program gets the newest settings, one
 // message at a time: it needs them for the first picture after a move.
 async function onDimmer() {
   draw();
@@ -36,7 +36,7 @@ function makeDimmers(state) {
     const change = () => {
       d.isOn = on.checked;
       d.level = Number(level.value);
-      // A colour keeps the luminance.
+      // The new colour has the same luminance.
       const c = [1, 3, 5].map((k) => (parseInt(colour.value.slice(k, k + 2), 16) / 255) ** 2.2);
       const l = luminanceOf(...c);
       d.colour = colour.value === '#ffffff' || !(l > 0) ? [1, 1, 1] : c.map((v) => v / l);

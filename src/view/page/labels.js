@@ -1,7 +1,7 @@
-// Text over the picture that never overlaps other text, and the levels of lines of equal value.
+// Places text over the picture without overlaps, and chooses the levels of isolines.
 'use strict';
 
-// Places labels one by one and leaves out those that would cover an earlier one.
+// Places labels one by one. A label that would cover an earlier one is left out.
 class LabelBoard {
   constructor(g) {
     this.g = g;
@@ -12,7 +12,7 @@ class LabelBoard {
     g.lineWidth = 3;
     g.lineJoin = 'round';
   }
-  // Centred at x, baseline at y. False: there is no room.
+  // Draws a label centred at x with its baseline at y. Returns false if there is no room.
   place(text, x, y, colour) {
     const half = this.g.measureText(text).width / 2 + 3;
     const box = [x - half, y - 11, x + half, y + 4];
@@ -27,8 +27,8 @@ class LabelBoard {
   }
 }
 
-// Levels for lines on a scale from 0 to `most`: 1, 2, 3, 5 and 7.5 times powers of ten within its
-// last decade, the steps in which lighting requirements are written.
+// Returns levels of isolines on a scale from 0 to `most`: 1, 2, 3, 5 and 7.5 times powers of ten
+// within its last decade. Lighting requirements use these steps.
 function levelsUpTo(most) {
   const power = 10 ** Math.floor(Math.log10(most) + 1e-9), levels = [];
   for (const decade of [power / 10, power])
@@ -36,7 +36,7 @@ function levelsUpTo(most) {
   return levels.filter((v) => v >= 0.0999 * most && v <= 1.0001 * most).map((v) => +v.toPrecision(3));
 }
 
-// The levels that the user wrote, or levels that suit the scale where the field is empty.
+// Returns the user's levels, or suitable ones for the scale if the field is empty.
 function levelsOf(text, most) {
   const levels = text.split(/[,;\s]+/).map(Number).filter((v) => v > 0);
   return levels.length ? levels : levelsUpTo(most);

@@ -1,8 +1,9 @@
-// Points and grids: asked for, waited for, shown, by the settings of the luminaires.
+// Measures points and grids: requests them, polls for values, and shows them for the settings of
+// the luminaires.
 'use strict';
 
 class Measurements {
-  // ask(path, body) posts; get(path) reads; changed() draws.
+  // ask(path, body) posts; get(path) reads; changed() redraws.
   constructor(ask, get, factors, changed) {
     Object.assign(this, {ask, get, factors, changed});
     this.all = [];
@@ -13,13 +14,13 @@ class Measurements {
   }
   async begin(item, path, body) {
     const answer = await this.ask(path, body);
-    // From here on `rows` are of values, by luminaires.
+    // `rows` holds values by luminaires from here on.
     Object.assign(item, answer, {rows: null});
     item.label = item.kind === 'grid' ? `grid ${answer.columns} × ${answer.rows}` : answer.name || 'point';
     this.all.push(item);
     this.changed();
   }
-  // Values that are there by now; true while some are still awaited.
+  // Fetches available values. Returns true while some are missing.
   async poll() {
     let isWaiting = false;
     for (const item of this.all) {
@@ -35,7 +36,7 @@ class Measurements {
     }
     return isWaiting;
   }
-  // By single luminaires from now on, or by another light: everything once more.
+  // Measures all points again, by single luminaires or under another light.
   async again(which = () => true) {
     for (const item of this.all.filter(which)) {
       const {number} = await this.ask('measure', {number: item.number});
@@ -45,7 +46,7 @@ class Measurements {
   }
   needsDimmers(count) { return this.all.some((m) => m.rows && m.rows.length !== count); }
 
-  // [lx, standard error] of every point; null while it is not known.
+  // Returns [lx, standard error] of every point; null if unknown.
   values(item) {
     if (!item.rows || !item.rows.length) return null;
     const factors = this.factors(), isWhole = item.rows.length !== factors.length;
@@ -75,8 +76,8 @@ class Measurements {
     const least = Math.min(...lx);
     return `mean ${lxText(mean)} lx, minimum ${lxText(least)}, uniformity ${(mean > 0 ? least / mean : 0).toFixed(2)}`;
   }
-  // Marks at all points, and as many values as there is room for. The value next to the pointer, in
-  // shares of the canvas, comes first: so every value of a dense grid can be read.
+  // Draws marks at all points, and as many values as fit. The value nearest to the pointer (shares
+  // of the canvas) is placed first, so that every value of a dense grid can be read.
   draw(g, toScreen, labels, pointed) {
     const marks = [];
     for (const item of this.all) {

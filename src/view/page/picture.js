@@ -1,13 +1,13 @@
-// Pictures as floats: sums of layers, exposure, false colours, lines of equal value.
+// Pictures as floats: sums of layers, exposure, false colours, isolines.
 'use strict';
 
-// A layer as the program sends it: four words, then floats, row by row from the top.
+// Parses a layer from the program: four 32-bit words, then floats, row by row from the top.
 function layerOf(buffer) {
   const [width, height, channels, version] = new Uint32Array(buffer, 0, 4);
   return {width, height, channels, version, data: new Float32Array(buffer, 16)};
 }
 
-// Σ factor × layer, for layers of one size; factors are [r, g, b].
+// Returns Σ factor × layer for layers of one size; factors are [r, g, b].
 function sumOf(layers, factors) {
   const {width, height} = layers[0];
   const data = new Float32Array(width * height * 3);
@@ -26,16 +26,16 @@ function sumOf(layers, factors) {
 
 const luminanceOf = (r, g, b) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
 
-// Where pixel (x, y) of a picture of that size is in another layer.
+// Returns the index of pixel (x, y), in a picture of the given size, in another layer.
 function indexIn(layer, x, y, width, height) {
   const u = Math.min(layer.width - 1, Math.floor((x + 0.5) * layer.width / width));
   const v = Math.min(layer.height - 1, Math.floor((y + 0.5) * layer.height / height));
   return (v * layer.width + u) * layer.channels;
 }
 
-// One number per pixel. luminance: cd/m². illuminance: π L / ρ, channel by channel, which is exact
-// for matte surfaces that do not shine; NaN where next to nothing is reflected. error: % of the
-// luminance. scale: cd/m² per unit of the picture.
+// Returns one number per pixel. luminance: cd/m². illuminance: π L / ρ by channel, exact for matte
+// surfaces that do not emit; NaN where the reflectance is nearly 0. error: % of the luminance.
+// scale: cd/m² per unit of the picture.
 function valuesOf(kind, picture, albedo, error, scale) {
   const {width, height, data} = picture;
   const values = new Float32Array(width * height);
@@ -60,7 +60,7 @@ function valuesOf(kind, picture, albedo, error, scale) {
   return {width, height, values};
 }
 
-// The value that a share of the finite ones stay below, by a sample of them.
+// Returns a quantile of the finite values, estimated from a sample of them.
 function quantile(values, share) {
   const some = [];
   const step = Math.max(1, Math.floor(values.length / 4000));
@@ -70,15 +70,15 @@ function quantile(values, share) {
   return some[Math.min(some.length - 1, Math.floor(share * some.length))];
 }
 
-// 1, 2 or 5 times a power of ten, not less.
+// Rounds up to 1, 2 or 5 times a power of ten.
 function roundUp(v) {
   if (!(v > 0)) return 1;
   const power = 10 ** Math.floor(Math.log10(v));
   return [1, 2, 5, 10].find((m) => m * power >= v * 0.999) * power;
 }
 
-// Stops that bring the mean logarithm of luminance to mid-grey, without its darkest and brightest
-// twentieth, as --exposure auto.
+// Returns the stops that bring the mean logarithm of luminance to mid-grey, without the darkest and
+// brightest twentieth, as --exposure auto does.
 function autoStops(picture) {
   const logs = [];
   const d = picture.data, step = 3 * Math.max(1, Math.floor(d.length / 60000));
@@ -92,7 +92,7 @@ function autoStops(picture) {
   return Math.log2(0.18) - kept.reduce((a, b) => a + b, 0) / kept.length;
 }
 
-// Hable's curve as the program has it, and the sRGB curve, as a table over the square root of light.
+// Table of Hable's curve, as in the program, and the sRGB curve, over the square root of light.
 const hable = (x) => (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.5) + 0.06) - 0.02 / 0.3;
 function displayTable(isFilmic) {
   const size = 4096, most = isFilmic ? 4 : 1, table = new Uint8Array(size + 1);
@@ -115,14 +115,14 @@ function drawPicture(picture, stops, isFilmic, pixels, from, to) {
     }
 }
 
-// The report's palette: its lightness (CIE L*) rises evenly, so equal steps of value look equal.
+// Palette of reports. Its lightness (CIE L*) rises evenly, so that equal steps of value look equal.
 const colourNodes = [[38, 20, 84], [52, 70, 140], [36, 117, 142], [42, 157, 120], [122, 192, 74], [214, 214, 40],
   [252, 246, 178]];
 const colours = Array.from({length: 257}, (_, n) => {
   const at = n / 256 * (colourNodes.length - 1), k = Math.min(Math.floor(at), colourNodes.length - 2);
   return [0, 1, 2].map((c) => Math.round(colourNodes[k][c] + (at - k) * (colourNodes[k + 1][c] - colourNodes[k][c])));
 });
-// From 0 to `most`, or over three decades below it.
+// Scale from 0 to `most`, or over three decades below it.
 function positionOf(value, most, isLog) {
   return isLog ? 1 + Math.log10(Math.max(value, 1e-30) / most) / 3 : value / most;
 }
@@ -149,7 +149,8 @@ function drawLegend(canvas, most, isLog, unit) {
   g.fillStyle = '#e4e6ea';
   g.font = '11px system-ui, "DejaVu Sans", sans-serif';
   g.textAlign = 'center';
-  // `most` is 1, 2 or 5 times a power of ten unless the user chose it: fifths or quarters are round.
+  // `most` is 1, 2 or 5 times a power of ten unless the user chose it, so its fifths or quarters
+  // are round.
   const parts = isLog ? 3 : Number(most.toPrecision(1)) / 10 ** Math.floor(Math.log10(most)) === 2 ? 4 : 5;
   for (let k = 0; k <= parts; ++k) {
     const v = isLog ? most * 10 ** (k - 3) : most * k / parts;
@@ -158,7 +159,7 @@ function drawLegend(canvas, most, isLog, unit) {
   g.fillText(unit, width / 2, 43);
 }
 
-// Means over blocks, so that lines follow light and not noise.
+// Returns means over blocks, so that isolines follow the light and not the noise.
 function smoothed(map, block) {
   const width = Math.floor(map.width / block), height = Math.floor(map.height / block);
   const values = new Float32Array(width * height);
@@ -175,7 +176,7 @@ function smoothed(map, block) {
   return {width, height, values};
 }
 
-// Segments [x0, y0, x1, y1] between the middles of a map's pixels, by marching squares.
+// Returns segments [x0, y0, x1, y1] between the middles of a map's pixels, by marching squares.
 function linesAt(map, level) {
   const {width, height, values} = map, segments = [];
   for (let y = 0; y + 1 < height; ++y)

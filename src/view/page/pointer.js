@@ -1,4 +1,4 @@
-// What mouse, fingers and keys do to the view.
+// Moves the camera by mouse, touch and keys.
 'use strict';
 
 const tool = () => document.querySelector('input[name=tool]:checked').value;
@@ -14,7 +14,7 @@ function placeOf(event) {
     .map((v) => Math.max(0, Math.min(1, v)));
 }
 
-// Two fingers: their distance zooms, their middle moves the camera sideways.
+// Two fingers: their distance zooms, their midpoint moves the camera sideways.
 class Pinch {
   constructor(points) { this.set(points); }
   set([a, b]) {

@@ -1,4 +1,4 @@
-// The page: asks for layers as they get finer, shows them, and sends what users do.
+// Main script of the page: fetches layers as they are refined, shows them, and sends what users do.
 'use strict';
 
 const $ = (id) => document.getElementById(id);
@@ -18,13 +18,13 @@ const post = async (path, body) =>
   (await request(path, {method: 'POST', body: JSON.stringify(body ?? {})})).json();
 function say(text) { $('hint').textContent = text; }
 
-// Colour times setting of every luminaire.
+// Returns colour times setting of every luminaire.
 const factors = () => app.dimmers.map((d) => d.isOn ? d.colour.map((c) => c * d.level) : [0, 0, 0]);
 const areDimmed = () => factors().some((f) => f.some((v) => v !== 1));
 const measurements = new Measurements(post, getJson, factors, () => { drawMeasured(); drawOverlay(); });
 
-// The picture as the dimmers are set; null while it is not known. The sum of the dimmers' own layers
-// is finer than the layer "dimmed", which is there sooner after a move.
+// Returns the picture as the dimmers are set; null if unknown. The sum of the dimmers' own layers
+// is finer than the layer "dimmed", which arrives sooner after a move.
 function currentPicture() {
   const {whole, dimmed} = app.layers;
   if (!areDimmed()) return whole ?? null;
@@ -37,8 +37,8 @@ function currentPicture() {
   return dimmed ?? null;
 }
 
-// Whether a layer shows what the camera sees now. After a move the first pictures have no layers of
-// reflectance and error, and those of another view would give wrong figures.
+// True if a layer belongs to the current view. The first pictures after a move have no albedo and
+// error layers, and those of another view would give wrong figures.
 const isOfView = (name) => app.state.layers[name]?.view === app.state.view;
 
 const scaleOf = () => (app.state.is_photometric ? 1 : 179);
@@ -56,8 +56,9 @@ function drawSide(picture, kind, pixels, from, to) {
   return {map, most, kind};
 }
 
-// The upper end of the scale: the user's, or a round value that 2 % of the pixels exceed while all
-// luminaires are on. It stays until the user asks for a new one, so that a dimmed room looks dimmer.
+// Returns the upper end of the scale: the user's, or a round value that 2 % of the pixels exceed
+// while all luminaires are on. It stays until the user asks for a new one, so that a dimmed room
+// looks dimmer.
 function mostOf(kind, map) {
   const asked = Number($('most').value);
   if (kind === $('show').value && asked > 0) return asked;
@@ -97,7 +98,7 @@ function draw() {
   drawOverlay();
 }
 
-// Of another size: by the nearest pixels.
+// Resizes an image by nearest pixels.
 function fitted(layer, width, height) {
   if (!layer || (layer.width === width && layer.height === height)) return layer;
   const data = new Float32Array(3 * width * height);
@@ -109,7 +110,7 @@ function fitted(layer, width, height) {
   return {width, height, channels: 3, data};
 }
 
-// The canvases fill the stage as far as the picture's shape allows.
+// Fits the canvases into the stage, with the picture's aspect ratio.
 function layOut() {
   if (!app.state) return;
   const stage = $('stage').getBoundingClientRect(), [w, h] = app.state.size;
@@ -152,7 +153,7 @@ function drawOverlay() {
   }
 }
 
-// A line's label stands where there is room, nearest to the middle of its segments.
+// Places a line's label at the free spot nearest to the middle of its segments.
 function drawLines(g, canvas, labels) {
   const block = Math.max(1, Math.round(app.map.map.width / 160)), map = smoothed(app.map.map, block);
   const [sx, sy] = [block * canvas.width / app.map.map.width, block * canvas.height / app.map.map.height];
@@ -219,7 +220,7 @@ function setStops(stops) {
   $('stops-value').textContent = `${Number($('stops').value).toFixed(1)}`;
 }
 
-// Fetches the layers that have changed. True if any has.
+// Fetches the layers that have changed. Returns true if any has.
 async function fetchLayers(state) {
   const wanted = ['whole', 'albedo', 'error'];
   if ($('beside').value && $('beside').value !== 'error') wanted.push('second');
@@ -246,7 +247,7 @@ function showStatus(state) {
     ? 'The picture under these settings is being made.' : '';
 }
 
-// The program is gone: says so, says how to start it again, and leaves no control that does nothing.
+// Reports that the program has ended and how to start it again, and disables all controls.
 function showEnd() {
   app.hasEnded = true;
   const file = app.state?.file ?? 'SCENE';
@@ -279,7 +280,7 @@ async function tick() {
   if (!app.hasEnded) setTimeout(tick, wait);
 }
 
-// One message at a time is under way; the newest place is sent after it.
+// Only one message is sent at a time; the newest camera follows it.
 async function sendCamera(extra) {
   app.movedAt = performance.now();
   app.isMovePending = true;
