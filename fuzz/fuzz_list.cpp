@@ -32,7 +32,7 @@ void check_finite(const Vec3d& v) {
 }
 
 // Checks that lights are usable: prepares them and lights a point.
-void light_up(Scene scene) {
+void sample_direct_light(Scene scene) {
   for (const Light& e : scene.lights) {
     check_finite(Vec3d(e.position));
     check_finite(Vec3d(e.direction));
@@ -57,7 +57,7 @@ void read_weather_of(const std::string& path) {
     options.up = "0,0,1";
     Scene scene;
     add_daylight(scene, options);
-    light_up(std::move(scene));
+    sample_direct_light(std::move(scene));
   }
 }
 
@@ -67,7 +67,7 @@ void read_list(const InputFolder& folder, const std::string& path) {
   Scene scene;
   add_luminaire_list(scene, path, {0, 0, -1});
   watts_of_luminaire_list(path, {0, 0, -1});
-  light_up(std::move(scene));
+  sample_direct_light(std::move(scene));
 }
 
 void measure_few(const std::string& path) {

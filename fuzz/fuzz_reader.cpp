@@ -77,7 +77,7 @@ void read(const InputFolder& folder, const std::string& path) {
                        ending == "exr" || ending == "webp" || ending == "tga") {
     read_image(path, size_t(1) << 22);
     Raster raster = decode_raster(read_file(path, size_t(1) << 26), path, size_t(1) << 22);
-    obey_own_colours(raster);
+    convert_to_srgb(raster);
   } else if constexpr (ending == "obj" || ending == "ply" || ending == "stl") {
     import_scene(path);
     if (outcome(path, 0) != outcome(path, 61)) std::abort();

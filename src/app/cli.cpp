@@ -238,7 +238,7 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
   add_indirect(*s, raw.indirect);
   add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
-  c.daylight.invents_sky = false;  // no value may depend on a sky that nobody asked for
+  c.daylight.adds_default_sky = false;  // no value may depend on a sky that nobody asked for
   add_threads(*s, c.threads);
   add_seed(*s, c.seed);
   s->add_flag("--quiet", c.is_quiet, "No progress bar, notes or warnings");

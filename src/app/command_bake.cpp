@@ -214,7 +214,7 @@ void add_bake(CLI::App& app, BakeCommand& c) {
       "take the radiosity that troffer radiosity wrote");
   add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
-  c.daylight.invents_sky = false;  // lightmaps hold measured values
+  c.daylight.adds_default_sky = false;  // lightmaps hold measured values
   add_threads(*s, c.threads);
   add_seed(*s, c.seed);
   s->add_flag("--quiet", c.is_quiet, "No progress bar, notes, warnings or figures");

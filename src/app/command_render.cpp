@@ -308,7 +308,7 @@ void write_files(const RenderCommand& c, const RenderResult& result, const Camer
 
 // Only the leading process shows progress and keeps files.
 void join(RenderCommand& c, ProcessGroup& group) {
-  if (c.options.threads == 0) c.options.threads = group.usual_threads();
+  if (c.options.threads == 0) c.options.threads = group.default_threads();
   if (group.leads()) return;
   c.is_quiet = true;
   c.has_preview = false;

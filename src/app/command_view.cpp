@@ -99,7 +99,7 @@ int run_view(const ViewCommand& c) {
   Scene scene = load_scene(choice, c.lights, &c.daylight, c.is_quiet, up);
   const auto& warnings = scene.warnings.entries();
   if (std::any_of(warnings.begin(), warnings.end(),
-                  [](const Warning& w) { return w.text == invented_sky; })) {
+                  [](const Warning& w) { return w.text == default_sky_warning; })) {
     settings.notice =
         "The scene has no light. An even sky of 10 000 lx, which it does not have, lights this "
         "picture: its values say nothing about the scene. --sky none keeps it dark.";

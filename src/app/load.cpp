@@ -76,12 +76,12 @@ Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& ligh
                  const ShowShapes& show_shapes) {
   if (!choice.up.empty()) parse_up(choice.up);  // reports a mistake before any work
   Scene scene = import_shown(choice, show_shapes ? ImageUse::left_out : ImageUse::read, is_quiet);
-  if (scene.left_out_image_bytes.value_or(0) > 0) {
+  if (scene.skipped_image_bytes.value_or(0) > 0) {
     show_shapes(scene);
     scene = Scene();  // frees it before the scene is read again
     scene = import_shown(choice, ImageUse::read, is_quiet);
   }
-  scene.left_out_image_bytes.reset();
+  scene.skipped_image_bytes.reset();
   up.decision = up_of(choice, scene);
   const size_t lights_in_file = scene.lights.size();
   if (daylight != nullptr) add_daylight(scene, *daylight, up.decision);
@@ -102,7 +102,7 @@ Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& ligh
 }
 
 UpDecision up_of(const SceneChoice& choice, const Scene& scene) {
-  return choice.up.empty() ? decide_up(scene) : asked_up(parse_up(choice.up));
+  return choice.up.empty() ? decide_up(scene) : requested_up(parse_up(choice.up));
 }
 
 void tell_up(const UpDecision& decision) {

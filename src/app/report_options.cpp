@@ -140,7 +140,7 @@ void add_report(CLI::App& app, ReportCommand& c) {
   add_how(*s, c);
   add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
-  c.daylight.invents_sky = false;  // no verdict may depend on a sky that nobody asked for
+  c.daylight.adds_default_sky = false;  // no verdict may depend on a sky that nobody asked for
   add_threads(*s, c.threads);
   add_seed(*s, c.seed);
   s->add_flag("--quiet", c.is_quiet, "No progress bar, notes or warnings");

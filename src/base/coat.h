@@ -12,10 +12,10 @@ namespace troffer {
 // rule.
 float mean_reflectance_inside(double index);
 
-// Convert the reflectance ρ of a base under a coat of mean inside reflectance f. as_of_white_base()
+// Convert the reflectance ρ of a base under a coat of mean inside reflectance f. to_white_base()
 // returns the equivalent reflectance for a coat that treats every inner reflection as if the base
 // were white: ρ (1-f) / (1-ρf). from_white_base() is its inverse.
-constexpr float as_of_white_base(float rho, float f) {
+constexpr float to_white_base(float rho, float f) {
   return rho * (1 - f) / (1 - rho * f);
 }
 constexpr float from_white_base(float rho, float f) {

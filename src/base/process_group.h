@@ -63,7 +63,7 @@ class ProcessGroup {
   // Withdraws this process after an error; it takes no further part.
   virtual void leave(const std::string& why) = 0;
   // Number of threads for this process if the user gives none.
-  virtual int usual_threads() const = 0;
+  virtual int default_threads() const = 0;
 };
 
 // Shares the work with the group. Without group (null), this process does all items in order.

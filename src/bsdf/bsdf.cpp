@@ -66,12 +66,12 @@ Rgb separable(const Bsdf& b, const Gains& at_o, const Vec3& wo, const Vec3& wi) 
     const Gains at_i = gains_at(b, wi);
     Rgb sum = b.diffuse * (at_o.diffuse * at_i.diffuse) + soft_value(b.soft, at_o.soft, at_i.soft);
     if (b.cover.has_lobe()) sum += sheen(b, wo, wi, at_o, at_i);
-    return (sum + b.glass_again * (at_o.glass * at_i.glass)) * (cos_i * inv_pi_f);
+    return (sum + b.glass_lost_reflected * (at_o.glass * at_i.glass)) * (cos_i * inv_pi_f);
   }
-  if (b.glass_through.is_black()) return Rgb{0};
+  if (b.glass_lost_transmitted.is_black()) return Rgb{0};
   const float far = far_glass_gain(b, -cos_i);
   const float radiance_scale = b.is_thin ? 1.0f : 1 / (b.eta * b.eta);
-  return b.glass_through * (at_o.glass * far * -cos_i * inv_pi_f * radiance_scale);
+  return b.glass_lost_transmitted * (at_o.glass * far * -cos_i * inv_pi_f * radiance_scale);
 }
 
 // Glossy reflection, or transmission through a thin sheet with wi mirrored to the viewer's side.
@@ -135,9 +135,9 @@ BsdfValue glossy_below(const Bsdf& b, const Vec3& wo, const Vec3& wi, float pass
   if (!(b.clear.bend > 1)) return glossy_mirrored(b, wo, wi, false, pass);
   const Vec3 in = b.clear.below(wi);
   BsdfValue v = glossy_mirrored(b, b.clear.below(wo), in, false, pass);
-  const float squeeze = b.clear.squeeze(wi, in);
-  v.f_cos *= squeeze;
-  v.pdf *= squeeze;
+  const float solid_angle_factor = b.clear.solid_angle_factor(wi, in);
+  v.f_cos *= solid_angle_factor;
+  v.pdf *= solid_angle_factor;
   return v;
 }
 

@@ -1,7 +1,7 @@
 // Reflection and transmission at a hit: evaluates, samples and gives densities of a material's
 // scattering function. All integrators use it; make_bsdf() builds one per hit. A Bsdf is plain data
-// that points into BsdfTables. docs/reference/materials.md describes each model and how well it conserves
-// energy.
+// that points into BsdfTables. docs/reference/materials.md describes each model and how well it
+// conserves energy.
 //
 // Directions are unit vectors in the local shading frame and point away from the surface. z is the
 // shading normal on the viewer's side, so wo.z > 0; wo.z <= 0 scatters nothing. wi.z > 0 is
@@ -71,14 +71,14 @@ struct Bsdf {
   ThinFilm film;  // for Fresnel::schlick and Fresnel::glass
 
   SoftLobe soft;
-  SheenCover cover;  // lies over all lobes above
+  SheenLayer cover;  // lies over all lobes above
   ClearCoat clear;   // lies over everything, `cover` included
 
   // Separable lobes: colour × g(wo) g(wi) / pi, each g = 1 - a directional albedo.
   Rgb diffuse;  // g: that of the coat, or 1
   Rgb through;  // same lobe for diffuse transmission
   // lost light of glass, reflected and transmitted (without 1/eta²)
-  Rgb glass_again, glass_through;
+  Rgb glass_lost_reflected, glass_lost_transmitted;
   float diffuse_mean = 1;  // cosine-weighted means of g: diffuse, glass near, glass far
   float near_mean = 0, far_mean = 0;
   float coat_f0 = 0, coat_f90 = 0;

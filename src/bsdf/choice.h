@@ -63,8 +63,8 @@ inline Energies energies_at(const Bsdf& b, const Gains& g, float cos_o) {
   if (!b.has_separable) return e;
   e.diffuse = b.diffuse * (g.diffuse * b.diffuse_mean);
   e.again = soft_energy(b.soft, g.soft) + b.cover.colour * g.sheen * g.coat +
-            b.glass_again * (g.glass * b.near_mean);
-  e.through = b.glass_through * (g.glass * b.far_mean);
+            b.glass_lost_reflected * (g.glass * b.near_mean);
+  e.through = b.glass_lost_transmitted * (g.glass * b.far_mean);
   return e;
 }
 

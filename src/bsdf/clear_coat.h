@@ -81,7 +81,7 @@ struct ClearCoat {
   }
   // Returns the factor that turns f cos and densities of directions below the coat into those of
   // directions above: the ratio of solid angles times the ratio of cosines.
-  float squeeze(const Vec3& w, const Vec3& in) const {
+  float solid_angle_factor(const Vec3& w, const Vec3& in) const {
     return w.z / (bend * bend * std::max(in.z, 1e-9f));
   }
 

@@ -66,7 +66,7 @@ inline Gains gains_at(const Bsdf& b, const Vec3& w) {
 }
 
 // True if the covers of glass lie on its far side (for a sheet: also there).
-inline bool is_worn_beyond(const Bsdf& b) {
+inline bool has_cover_on_far_side(const Bsdf& b) {
   return b.is_thin || b.is_within;
 }
 
@@ -74,7 +74,7 @@ inline bool is_worn_beyond(const Bsdf& b) {
 inline float far_glass_gain(const Bsdf& b, float cosine) {
   const CosineCoordinate at(cosine);
   const float lost = missing(b.far, at);
-  return is_worn_beyond(b) ? lost * b.cover.pass(at) * b.clear.pass(cosine) : lost;
+  return has_cover_on_far_side(b) ? lost * b.cover.pass(at) * b.clear.pass(cosine) : lost;
 }
 
 // Returns the share of gloss that the sheen leaves: the smaller pass of the directions on covered
@@ -83,7 +83,7 @@ inline float sheen_pass(const Bsdf& b, float cos_o, float cos_i) {
   const auto pass = [&b](float c) { return b.cover.pass(CosineCoordinate(std::abs(c))); };
   const float near = b.is_within ? 1.0f : pass(cos_o);
   if (cos_i > 0) return b.is_within ? 1.0f : std::min(near, pass(cos_i));
-  return is_worn_beyond(b) ? std::min(near, pass(cos_i)) : near;
+  return has_cover_on_far_side(b) ? std::min(near, pass(cos_i)) : near;
 }
 
 // Returns gains_at(), or defaults without computing them if the Bsdf does not need them.

@@ -65,8 +65,9 @@ void add_glass_compensation(Bsdf& b, const Inputs& in, Rgb tint) {
     const float far = (in.is_front ? from_inside : from_outside) / ratio;
     through[c] = near / std::max(1.0f, std::max(near, far));
   }
-  b.glass_again = lost * (Rgb{1} - through) * (b.glass_weight / b.near_mean) * b.reflected_share;
-  b.glass_through = tint * lost * through * (b.glass_weight / b.far_mean);
+  b.glass_lost_reflected =
+      lost * (Rgb{1} - through) * (b.glass_weight / b.near_mean) * b.reflected_share;
+  b.glass_lost_transmitted = tint * lost * through * (b.glass_weight / b.far_mean);
   b.has_separable = true;
 }
 

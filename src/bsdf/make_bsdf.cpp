@@ -197,7 +197,7 @@ void set_coated_diffuse(Bsdf& b, const Inputs& in) {
 
 // Returns the f0 of a Schlick curve with this f90 that bounds the reflectance of the filmed coat
 // from above, at the cosines tested.
-float hull_below_film(const Bsdf& b, float f0, float f90) {
+float schlick_bound_of_film(const Bsdf& b, float f0, float f90) {
   float least = f0;
   for (const float c : {1.0f, 0.85f, 0.7f, 0.55f, 0.4f, 0.25f, 0.1f}) {
     const float film = max_component(film_reflectance(b.film, b.film.coat_f0, c)) * f90;
@@ -271,7 +271,7 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
   if (opaque > 0) {
     b.coat_f0 = max_component(coat_f0);
     b.coat_f90 = specular;
-    if (b.film.share > 0) b.coat_f0 = hull_below_film(b, b.coat_f0, specular);
+    if (b.film.share > 0) b.coat_f0 = schlick_bound_of_film(b, b.coat_f0, specular);
     float average = b.coat_f0 + (b.coat_f90 - b.coat_f0) / 21;
     b.coat = Bsdf::Coat::smooth_schlick;
     if (!b.is_smooth) {

@@ -11,7 +11,7 @@ Bsdf diffuse_part(const Bsdf& b) {
   d.has_transmission = d.is_smooth = false;
   d.soft = {};
   d.clear.is_shown = d.cover.is_shown = false;
-  d.glass_again = d.glass_through = Rgb{0};
+  d.glass_lost_reflected = d.glass_lost_transmitted = Rgb{0};
   d.glass_weight = 0;
   d.has_separable = !d.diffuse.is_black();
   return d;
@@ -32,7 +32,7 @@ Bsdf specular_part(const Bsdf& b) {
   s.coat = Bsdf::Coat::none;
   s.diffuse = Rgb{0};
   s.has_separable = s.soft.kind != SoftLobe::Kind::none || s.cover.has_lobe() ||
-                    !s.glass_again.is_black() || !s.glass_through.is_black();
+                    !s.glass_lost_reflected.is_black() || !s.glass_lost_transmitted.is_black();
   return s;
 }
 

@@ -49,7 +49,7 @@ inline float sheen_value(const Vec3& o, const Vec3& i, float alpha) {
 
 // A sheen over all lobes of a Bsdf. It leaves 1 - its albedo in its largest colour channel, as the
 // extension defines. Solid glass has it on the outside, a sheet of glass on both sides.
-struct SheenCover {
+struct SheenLayer {
   float share = 0;       // largest colour channel; 0: no sheen
   bool is_shown = true;  // its own lobe counts, not only its attenuation
   AlbedoRow white;       // albedo of a white sheen

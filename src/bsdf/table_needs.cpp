@@ -18,7 +18,7 @@ bool can_coat_be_rough(const Material& m) {
 }  // namespace
 
 bool is_pane(const Material& m) {
-  if (m.is_image) return true;
+  if (m.is_mirror_pane) return true;
   const bool is_glass =
       m.kind == MaterialKind::dielectric || (m.kind == MaterialKind::metallic_roughness &&
                                              m.transmission.value > 0 && m.metallic.value < 1);
@@ -78,7 +78,7 @@ TableNeeds table_needs(const Material& m, float clear_ior) {
         widths_of(base_alpha(m, safe01(m.roughness.value), clear), safe01(m.anisotropy.value));
     const bool is_lossy = clear.share > 0 && a.across > smooth_alpha;
     if (a.along > a.across || is_lossy) n.grain = a;
-    n.over_grain = clear;
+    n.coat_over_grain = clear;
   } else if (is_metal && is_even && m.anisotropy.value > 0 && !(clear.bend > 1)) {
     n.grain = widths_of(alpha_of(safe01(m.roughness.value), m.roughness_meaning),
                         safe01(m.anisotropy.value));

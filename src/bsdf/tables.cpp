@@ -121,7 +121,7 @@ void BsdfTables::build_grain_tables(const std::vector<Material>& materials) {
     PreparedMaterial& p = materials_[i];
     TableNeeds needs = table_needs(materials[i], p.clear_coat_ior);
     if (!(needs.grain.along > 0)) continue;
-    ClearCoat& over = needs.over_grain;
+    ClearCoat& over = needs.coat_over_grain;
     set_rows(over, p);
     p.grain = grain_for(grains_, needs.grain, over, max_iors);
   }

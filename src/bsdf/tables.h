@@ -49,7 +49,7 @@ struct TableNeeds {
   bool has_clear_coat = false;  // tables for the index of its clear coat
   bool has_clear_inside = false;  // the same from below
   GgxWidths grain{0, 0};          // zeros: none, or not constant
-  ClearCoat over_grain;           // the coat above the grain, without its row
+  ClearCoat coat_over_grain;      // the coat above the grain, without its row
 };
 TableNeeds table_needs(const Material& material, float clear_coat_ior);  // table_needs.cpp
 

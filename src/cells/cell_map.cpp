@@ -127,14 +127,14 @@ CellMap::Found CellMap::search(uint32_t first, const CellHit& hit) const {
   return found;
 }
 
-uint64_t CellMap::expect_voxel(const CellHit& hit, float distance) const {
+uint64_t CellMap::prefetch_voxel(const CellHit& hit, float distance) const {
   const int32_t level = first_level(distance);
   const uint64_t key = key_of(hit, size_at(level), level);
   prefetch_line(&slots_[first_slot(key)]);
   return key;
 }
 
-void CellMap::expect_cell(uint64_t voxel) const {
+void CellMap::prefetch_cell(uint64_t voxel) const {
   const uint32_t cell = slots_[first_slot(voxel)].first;
   if (cell != no_cell) prefetch_object(anchors_[cell]);
 }
@@ -215,7 +215,7 @@ uint32_t CellMap::make(const CellHit& hit, int32_t level, bool is_asked) {
     a.is_divided = is_divided(hit, outline, a.size);
     a.is_halved = level < most_halvings && is_uneven_ && is_uneven_(outline, is_asked);
   }
-  a.is_narrow = looks_closely_ && !a.is_halved && ends_both_ways(a.position, a.normal, a.size);
+  a.is_narrow = resolves_narrow_ && !a.is_halved && ends_both_ways(a.position, a.normal, a.size);
   anchors_.push_back(a);
   hits_.emplace_back();
   return uint32_t(anchors_.size() - 1);
@@ -262,8 +262,8 @@ bool CellMap::ends_both_ways(const Vec3& position, const Vec3& normal, float siz
   return false;
 }
 
-void CellMap::look_closely(bool looks, int threads) {
-  looks_closely_ = looks;
+void CellMap::resolve_narrow(bool looks, int threads) {
+  resolves_narrow_ = looks;
   constexpr size_t at_a_time = 1024;
   parallel_for((size() + at_a_time - 1) / at_a_time, threads, [&](size_t part) {
     const size_t end = std::min((part + 1) * at_a_time, size());
@@ -275,7 +275,7 @@ void CellMap::look_closely(bool looks, int threads) {
 }
 
 bool CellMap::would_be_narrow(const CellHit& hit, float distance) const {
-  return looks_closely_ &&
+  return resolves_narrow_ &&
          ends_both_ways(hit.position, hit.horizon, size_at(first_level(distance)));
 }
 

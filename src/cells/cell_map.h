@@ -65,10 +65,10 @@ class CellMap {
   // Returns the finest cell there of those for rays no shorter than near(), or no_cell.
   uint32_t find_from_afar(const CellHit& hit) const;
   // Prefetch what find() will read, in two steps: the voxel, and then its first cell. Do each step
-  // for many hits, so that the memory has arrived by the next. The key that expect_voxel() returns
-  // is also for find(), with the same hit and distance.
-  uint64_t expect_voxel(const CellHit& hit, float distance) const;
-  void expect_cell(uint64_t voxel) const;
+  // for many hits, so that the memory has arrived by the next. The key that prefetch_voxel()
+  // returns is also for find(), with the same hit and distance.
+  uint64_t prefetch_voxel(const CellHit& hit, float distance) const;
+  void prefetch_cell(uint64_t voxel) const;
   uint32_t find(const CellHit& hit, float distance, uint64_t voxel) const;
   // Returns the cell as find() does, or makes one. is_asked: the ray is one that the picture will
   // send.
@@ -91,7 +91,7 @@ class CellMap {
   // Switches the marking of narrow cells on or off, for existing and further cells. A cell is
   // narrow on a sub-cell feature, such as a slat, a bar or a lip about as narrow as the cell, or a
   // thin pillar. Light differs between its sides, which are seen from different places.
-  void look_closely(bool looks, int threads);
+  void resolve_narrow(bool looks, int threads);
   bool is_narrow(size_t cell) const { return anchors_[cell].is_narrow; }
   // True if a cell made for the hit of a ray of this length would be narrow.
   bool would_be_narrow(const CellHit& hit, float distance) const;
@@ -115,7 +115,7 @@ class CellMap {
     float size = 0;
     bool is_divided = false;  // something stands in the voxel: hits must see the cell
     bool is_halved = false;   // smaller cells replace it
-    bool is_narrow = false;   // as far as look_closely() is on
+    bool is_narrow = false;   // as far as resolve_narrow() is on
   };
   struct Hits {
     std::array<CellHit, hits_per_cell> hits;
@@ -159,7 +159,7 @@ class CellMap {
   std::vector<Hits> hits_;
   std::vector<std::vector<CellHit>> more_hits_;
   std::vector<Slot> slots_;  // open addressing; their number is a power of two
-  bool looks_closely_ = false;
+  bool resolves_narrow_ = false;
   size_t used_ = 0;
   size_t frozen_ = 0;  // cells below this number get no more hits
   IsUneven is_uneven_;

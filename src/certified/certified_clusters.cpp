@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "certified/certified_lights.h"
-#include "certified/far_draws.h"
+#include "certified/open_parts.h"
 
 namespace troffer {
 
@@ -11,7 +11,7 @@ namespace {
 
 // Luminance at a hit of this weight that contributes 1 % of the picture's typical luminance. Errors
 // of weaker light are invisible.
-float least_light(float weight, float typical) {
+float luminance_floor(float weight, float typical) {
   constexpr float share = 0.01f;
   return weight > 0 ? std::min(share * typical / weight, 1e15f) : 0;
 }
@@ -20,7 +20,7 @@ float least_light(float weight, float typical) {
 // mask, a facet in a mask, and a point at which a glossy BRDF or a texture is evaluated.
 constexpr double rays_of_gather = 12, rays_of_pair = 0.15, rays_of_mask = 0.3,
                  rays_of_facet = 1.0 / 12, rays_of_point = 0.3;
-// Random sequences for LightsOfCluster::sequence.
+// Random sequences for ClusterLights::sequence.
 constexpr uint64_t matte_sequence = 0x6d61'7474, reduced_sequence = 0x7468'7269;
 
 struct Counted {
@@ -60,7 +60,7 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
   }
   if (has_far || !s.chosen.certified.empty()) seen = certify(members, has_far, s, out, counters);
   if (!is_closed_off && !has_far)
-    cast_far_rays(far_draws(s), members, s.far, seen, budget, s.far_rays, out, counters);
+    cast_environment_rays(far_draws(s), members, s.far, seen, budget, s.far_rays, out, counters);
 }
 
 // Adds the light of the sampled groups.
@@ -81,7 +81,7 @@ std::span<const float> CertifiedLights::certify(std::span<const uint32_t> member
   for (const uint32_t m : members) {
     s.cluster.receivers.push_back(s.hits.receivers[m]);
     s.cluster.receivers.back().floor =
-        least_light(luminance(s.hits.weights[m]), s.request.typical_luminance);
+        luminance_floor(luminance(s.hits.weights[m]), s.request.typical_luminance);
     const int32_t g = s.hits.glossy[m];
     s.integrand.hits().push_back(
         {s.hits.positions[m], g < 0 || s.hits.glossy_hits[size_t(g)].is_low_variance
@@ -98,8 +98,8 @@ std::span<const float> CertifiedLights::certify(std::span<const uint32_t> member
                   });
   DrawingBudget budget = budget_;
   budget.is_picture = s.request.is_picture;
-  draw_left({scene_, competition_, s.hits, members, s.cluster, s.integrand.sources()}, budget,
-            s.drawn, out, counters);
+  sample_open_parts({scene_, competition_, s.hits, members, s.cluster, s.integrand.sources()},
+                    budget, s.drawn, out, counters);
   return s.cluster.memory.light;
 }
 
@@ -107,10 +107,10 @@ std::span<const float> CertifiedLights::certify(std::span<const uint32_t> member
 void CertifiedLights::set_draws(std::span<const uint32_t> members, uint32_t effort_divisor,
                                 CertifiedLightsScratch& s) const {
   const bool is_matte =
-      budget_.matte_times > 1 &&
+      budget_.matte_draw_factor > 1 &&
       std::all_of(members.begin(), members.end(), [&](uint32_t m) { return s.hits.glossy[m] < 0; });
   s.chosen.draws =
-      std::max(budget_.draws * (is_matte ? budget_.matte_times : 1) / effort_divisor, 1u);
+      std::max(budget_.draws * (is_matte ? budget_.matte_draw_factor : 1) / effort_divisor, 1u);
   if (effort_divisor > 1)
     s.chosen.sequence = reduced_sequence + 2 * effort_divisor + (is_matte ? 1 : 0);
   else if (is_matte)

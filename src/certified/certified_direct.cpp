@@ -64,7 +64,7 @@ CertifiedDirect::CertifiedDirect(const PreparedScene& scene,
       settings_(settings),
       lights_(scene,
               {float(settings.error), float(settings.viewing_rays), uint32_t(settings.draws),
-               uint32_t(settings.matte_times)},
+               uint32_t(settings.matte_draw_factor)},
               uint32_t(settings.gloss_samples)),
       sampler_(scene) {
   lights_.set_occluders(*occluders_);
@@ -149,10 +149,10 @@ void CertifiedDirect::weigh(SeenEmission& seen) const {
 }
 
 float CertifiedDirect::weight_against(const CertifiedSource& source, const Walk& walk) const {
-  const LobeCompetition& competitor = lights_.competition();
-  const LobePlace at = source.far != nullptr
-                           ? LobePlace{walk.last_position, walk.last_normal}
-                           : competitor.place(walk.last_position, walk.last_normal);
+  const NominalSourceDensity& competitor = lights_.competition();
+  const SurfacePlace at = source.far != nullptr
+                              ? SurfacePlace{walk.last_position, walk.last_normal}
+                              : competitor.place(walk.last_position, walk.last_normal);
   return power_heuristic(walk.pdf, competitor.density(source, at, walk.ray.direction));
 }
 
@@ -170,7 +170,7 @@ float CertifiedDirect::weight_of(const Walk& walk, const Vertex& v) const {
   if (is_sampled) return sampler_.emission_weight(walk, v, uint32_t(settings_.shadow_rays));
   const int32_t primitive = primitive_at(scene_, v.surface);
   if (primitive >= 0 && lights_.is_drawn(uint32_t(v.surface.light))) {
-    const LobeCompetition& competitor = lights_.competition();
+    const NominalSourceDensity& competitor = lights_.competition();
     return power_heuristic(
         walk.pdf, competitor.density(uint32_t(primitive),
                                      competitor.place(walk.last_position, walk.last_normal),

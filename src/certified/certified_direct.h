@@ -25,7 +25,7 @@ struct CertifiedSettings {
   int gloss_samples = 32;  // points per source at which gloss and textures are evaluated
   int viewing_rays = 1;    // per pixel; they share the light samples
   int draws = 0;  // light samples per hit that may replace certificates of few lights; 0: none
-  int matte_times = 1;  // factor on `draws` for clusters without glossy hits
+  int matte_draw_factor = 1;  // factor on `draws` for clusters without glossy hits
 };
 
 // Returns settings for a standard error of a viewing ray's direct light, relative to the unoccluded
@@ -41,7 +41,7 @@ class CertifiedDirect final : public DirectLight {
 
   std::unique_ptr<DirectLightScratch> make_scratch() const override;
   WalkedPart walked_part() const override { return WalkedPart::specular; }
-  bool tells_variance() const override { return true; }
+  bool estimates_variance() const override { return true; }
   void begin(const SampleRequest& request, DirectLightScratch& scratch) const override;
   void queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBatch& out,
              Counters& counters) const override;

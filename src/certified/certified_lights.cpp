@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/random.h"
-#include "certified/far_draws.h"
-#include "certified/lit_places.h"
+#include "certified/lit_surfaces.h"
+#include "certified/open_parts.h"
 #include "light/light.h"
 #include "shadow/pilot_rays.h"
 #include "trace/occluders.h"
@@ -41,7 +41,7 @@ CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget
   add_drawn_lights(scene);
   groups_.finish();
   competition_ =
-      LobeCompetition(scene, gloss_points, groups_, groups_.are_many() || budget.draws > 0);
+      NominalSourceDensity(scene, gloss_points, groups_, groups_.are_many() || budget.draws > 0);
   const Box box = bounds(scene.scene);
   if (!box.is_empty()) reach_ = reach_of_diagonal * box.diagonal();
 }
@@ -156,9 +156,9 @@ bool CertifiedLights::add_flat_light(const PreparedScene& scene, uint32_t light,
 void CertifiedLights::set_occluders(const Occluders& occluders) {
   if (far_.cells->all().empty()) return;
   far_.occluders = &occluders;
-  far_.scene = far_scene(occluders);
+  far_.scene = large_facets(occluders);
   far_.shells = ClosedShells(scene_.scene, scene_.panes.is_empty() ? nullptr : &scene_.glass);
-  far_.is_shut_out = are_lit_places_closed(scene_, far_.points, far_.shells);
+  far_.seems_shut_out = are_lit_surfaces_closed(scene_, far_.points, far_.shells);
 }
 
 void CertifiedLights::add_far_lights(const PreparedScene& scene) {
@@ -172,7 +172,7 @@ void CertifiedLights::add_far_lights(const PreparedScene& scene) {
     if (const Portal* portal = scene.primitives[p].portal)
       for (const Quad& q : portal->frame(far_.frame_reach))
         far_.frames[p].push_back({q, no_facet, false});
-  for (const FarCell& cell : far_.cells->all()) {
+  for (const SkyPatch& cell : far_.cells->all()) {
     has_light_[scene.primitives[cell.primitive].light] = true;
     const Portal* portal = scene.primitives[cell.primitive].portal;
     if (portal != nullptr && portal->view(everywhere, cell.plane) == Portal::View::none) continue;
@@ -191,7 +191,7 @@ void CertifiedLights::add_far_lights(const PreparedScene& scene) {
     sources_.push_back(source);
     before_.push_back(-1);
   }
-  far_.points = FarPoints(std::span(sources_).subspan(far_.first_source));
+  far_.points = EnvironmentSampler(std::span(sources_).subspan(far_.first_source));
 }
 
 const CertifiedSource* CertifiedLights::source_towards(uint32_t primitive,
@@ -231,7 +231,7 @@ void CertifiedLights::add_drawn_lights(const PreparedScene& scene) {
 void CertifiedLights::illuminate(CertifiedLightsScratch& s, RadianceBatch& out,
                                  Counters& counters) const {
   if (s.hits.size() == 0) return;
-  if (!find_closed_off(s)) s.far = open_share_of_batch(far_draws(s), far_.is_shut_out);
+  if (!find_closed_off(s)) s.far = estimate_environment_share(far_draws(s), far_.seems_shut_out);
   cluster_receivers(s.hits.positions, s.hits.horizons, reach_, s.clusters);
   for (size_t c = 0; c < s.clusters.size(); ++c)
     illuminate_cluster(s.clusters.members(c), s, out, counters);
@@ -272,7 +272,7 @@ namespace {
 
 // Rays per hit so that the sky's light and the suns' light each err by `error`, relative to what
 // arrives.
-double rays_of_hit(const FarShare& share, bool has_suns, double error) {
+double rays_of_hit(const EnvironmentShare& share, bool has_suns, double error) {
   const double of_suns = std::sqrt(share.spread_of_sun) / (share.open * error);
   return rays_for_error(share.open_sky, error) + (has_suns ? std::pow(of_suns, 4.0 / 3) : 0.0);
 }

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "certified/drawn_lights.h"
-#include "certified/far_rays.h"
+#include "certified/environment_rays.h"
 #include "certified/light_groups.h"
 #include "certified/shadow_world.h"
 #include "certified/source_integrand.h"
@@ -39,13 +39,13 @@ struct CertifiedLightsScratch {
   std::vector<FoundFacets> found;  // per source: facets found during this batch
   ReceiverClusters clusters;
   CertifiedCluster cluster;
-  LightsOfCluster chosen;
+  ClusterLights chosen;
   std::vector<uint32_t> requested;    // source index of each request of the cluster
   std::vector<uint32_t> drawing;      // hits of the cluster, for draw()
   std::vector<uint32_t> first, rest;  // hits certified as a cost probe, and the remaining hits
   DrawnLightsScratch drawn;
-  FarRays far_rays;
-  FarShare far;  // share of environment light that arrives at the batch's hits
+  EnvironmentRays far_rays;
+  EnvironmentShare far;  // share of environment light that arrives at the batch's hits
   std::vector<uint8_t> is_closed_off;  // per hit; 1: provably enclosed by an opaque shell
 };
 
@@ -64,7 +64,7 @@ class CertifiedLights {
   // a light without a certificate shape (light.h).
   bool is_drawn(uint32_t light) const { return is_drawn_[light]; }
   bool is_empty() const { return groups_.size() == 0 && far_.cells->all().empty(); }
-  const LobeCompetition& competition() const { return competition_; }
+  const NominalSourceDensity& competition() const { return competition_; }
   // Returns the source that covers `point` on a light primitive, seen from its front or its back;
   // null if none does.
   const CertifiedSource* source_of(uint32_t primitive, bool is_back, const Vec3& point) const;
@@ -90,7 +90,7 @@ class CertifiedLights {
   void add_far_lights(const PreparedScene& scene);
   void illuminate_cluster(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                           RadianceBatch& out, Counters& counters) const;
-  FarPointDraws far_draws(const CertifiedLightsScratch& s) const {
+  EnvironmentSamplerInputs far_draws(const CertifiedLightsScratch& s) const {
     return {scene_, competition_, s.hits, far_.points, *far_.occluders};
   }
   // Sets s.is_closed_off. Returns true if no hit can receive environment light.
@@ -117,20 +117,20 @@ class CertifiedLights {
   const PreparedScene& scene_;
   std::vector<CertifiedSource> sources_;
   LightGroups groups_;
-  LobeCompetition competition_;
+  NominalSourceDensity competition_;
   std::vector<bool> has_light_, is_drawn_;
   // Per primitive: the last source that covers part of it, or -1. before_: per source, the
   // preceding source on the same primitive, or -1.
   std::vector<int32_t> source_of_front_, source_of_back_, before_;
   struct Far {
-    const FarCells* cells = nullptr;  // of the prepared scene
-    uint32_t first_source = 0;        // index of the first sky patch; sky patches end sources_
+    const SkyPatches* cells = nullptr;  // of the prepared scene
+    uint32_t first_source = 0;          // index of the first sky patch; sky patches end sources_
     const Occluders* occluders = nullptr;
-    FarScene scene;       // the scene's largest facets
-    FarPoints points;     // sampler of environment lights, used without proofs
-    ClosedShells shells;  // closed opaque surfaces, which keep environment light out
+    LargeFacets scene;          // the scene's largest facets
+    EnvironmentSampler points;  // sampler of environment lights, used without proofs
+    ClosedShells shells;        // closed opaque surfaces, which keep environment light out
     // rays found no environment light where other lights shine (not proved)
-    bool is_shut_out = false;
+    bool seems_shut_out = false;
     // Per primitive: frame around its portal, which blocks light that passes beside the portal.
     std::vector<std::vector<FacetToAdd>> frames;
     double frame_reach = 0;  // extent of the frames beyond the portals' sides, metres

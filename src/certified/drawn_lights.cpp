@@ -34,7 +34,7 @@ void sort_by_sources(const LightGroups& groups, std::vector<uint32_t>& chosen) {
 // Greedy from the strongest light on. Lights of share r of all light need N ~ r^3/2 samples, so
 // certifying a light of share s saves dN/dr s of them.
 void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hits,
-                   const DrawingBudget& budget, LightsOfCluster& out) {
+                   const DrawingBudget& budget, ClusterLights& out) {
   const uint32_t n = groups.size();
   groups.estimate(ball, out.estimates, out.near);
   out.is_certified.assign(n, 0);
@@ -75,7 +75,7 @@ void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hi
   out.draws = uint32_t(std::ceil(std::min(of_pixel / budget.viewing_rays, most_draws)));
 }
 
-bool certify_all(const LightGroups& groups, LightsOfCluster& out) {
+bool certify_all(const LightGroups& groups, ClusterLights& out) {
   out.certified.clear();
   bool are_others = false;
   for (uint32_t g = 0; g < groups.size(); ++g) {
@@ -89,7 +89,7 @@ bool certify_all(const LightGroups& groups, LightsOfCluster& out) {
   return are_others;
 }
 
-void certify_none(LightsOfCluster& out) {
+void certify_none(ClusterLights& out) {
   out.is_certified.assign(out.is_certified.size(), 0);
   out.certified.clear();
 }
@@ -132,7 +132,7 @@ struct Drawing {
   const DrawnLights& world;
   const LightGroups& groups;
   const WaitingHits& hits;
-  const LightsOfCluster& lights;
+  const ClusterLights& lights;
   DrawnLightsScratch& s;
 
   void of_members(std::span<uint32_t> members, const std::vector<float>& estimates,
@@ -213,7 +213,7 @@ Rgb Drawing::value(uint32_t i) const {
   if (!(cosine > 0) || !(dot(light.wi, r.horizon) > 0)) return {};
   if (hits.glossy[m] < 0) return Rgb{cosine};
   const GlossyHit& hit = hits.glossy_hits[size_t(hits.glossy[m])];
-  const LobeCompetition& competitor = world.competition;
+  const NominalSourceDensity& competitor = world.competition;
   const LightGroup& g = groups[s.chosen[i]];
   if (g.first_source == g.last_source)
     return glossy_value(hit, light.wi, competitor.density(s.primitives[i], hit.place, light.wi));
@@ -280,7 +280,7 @@ void Drawing::of_members(std::span<uint32_t> members, const std::vector<float>& 
 
 // Adds the variance of a run's sum. Sorted by light, samples are strata of equal probability, so
 // half the squared differences of neighbours estimate it. Samples of one pixel share a sequence.
-void enable_variance(const WaitingHits& hits, std::span<const DrawnLightsScratch::Draw> run,
+void add_variance(const WaitingHits& hits, std::span<const DrawnLightsScratch::Draw> run,
                      DrawnLightsScratch& s, RadianceBatch& out) {
   s.terms.clear();
   for (const auto& d : run) {
@@ -302,7 +302,7 @@ void enable_variance(const WaitingHits& hits, std::span<const DrawnLightsScratch
 }  // namespace
 
 void draw_lights(const DrawnLights& world, const WaitingHits& hits, std::span<uint32_t> members,
-                 const LightsOfCluster& lights, DrawnLightsScratch& s, RadianceBatch& out,
+                 const ClusterLights& lights, DrawnLightsScratch& s, RadianceBatch& out,
                  Counters& counters) {
   if (lights.draws == 0 || members.empty()) return;
   Drawing drawing{world, world.groups, hits, lights, s};
@@ -336,7 +336,7 @@ void resolve_draws(const PreparedScene& scene, const WaitingHits& hits, DrawnLig
     for (size_t r = 0; r < s.runs.size(); ++r) {
       const size_t last = r + 1 < s.runs.size() ? s.runs[r + 1] : s.draws.size();
       if (last > s.runs[r])
-        enable_variance(hits, std::span(s.draws).subspan(s.runs[r], last - s.runs[r]), s, out);
+        add_variance(hits, std::span(s.draws).subspan(s.runs[r], last - s.runs[r]), s, out);
     }
   counters.shadow_rays += s.rays.size();
   s.draws.clear();

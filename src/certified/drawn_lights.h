@@ -25,14 +25,15 @@ struct DrawingBudget {
   float viewing_rays = 1;  // per pixel
   // For few lights: samples per hit where these cost less than certificates; 0: none.
   uint32_t draws = 0;
-  uint32_t matte_times = 1;  // factor on `draws` where no hit is glossy, as matte samples cost less
+  uint32_t matte_draw_factor =
+      1;  // factor on `draws` where no hit is glossy, as matte samples cost less
   uint32_t effort_divisor = 1;  // SampleRequest::effort_divisor
   bool is_picture = false;      // SampleRequest::is_picture
 };
 
 // The lights of a cluster by treatment: certified or sampled. Scratch memory and result of
 // choose_lights().
-struct LightsOfCluster {
+struct ClusterLights {
   std::vector<float> estimates, near;  // per group, as LightGroups::estimate() returns them
   std::vector<uint8_t> is_certified;   // per group; 0: the group may be sampled
   std::vector<uint32_t> certified;     // group indices, ordered by source
@@ -46,12 +47,12 @@ struct LightsOfCluster {
 // Decides which groups to certify and how many samples the rest gets. Groups without sources are
 // always sampled, others only where lights are many. hits: number of hits in the ball.
 void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hits,
-                   const DrawingBudget& budget, LightsOfCluster& out);
+                   const DrawingBudget& budget, ClusterLights& out);
 
 // Certifies all groups that have sources and may send light. Returns true if other groups remain to
 // be sampled. certify_none() makes all groups sampled.
-bool certify_all(const LightGroups& groups, LightsOfCluster& out);
-void certify_none(LightsOfCluster& out);
+bool certify_all(const LightGroups& groups, ClusterLights& out);
+void certify_none(ClusterLights& out);
 
 // Returns a ball around the receivers of these hits. Precondition: `members` is not empty.
 ClusterBall ball_about(const WaitingHits& hits, std::span<const uint32_t> members);
@@ -95,14 +96,14 @@ struct DrawnLights {
   const PreparedScene& scene;
   const LightGroups& groups;
   std::span<const CertifiedSource> sources;
-  const LobeCompetition& competition;
+  const NominalSourceDensity& competition;
 };
 
 // Samples lights.draws points per member from the groups that are not certified; reorders
 // `members`. Shadow rays are traced once `most_rays` are pending. resolve_draws() traces the rest
 // and adds the light to `out`; `hits` must not change before that.
 void draw_lights(const DrawnLights& world, const WaitingHits& hits, std::span<uint32_t> members,
-                 const LightsOfCluster& lights, DrawnLightsScratch& scratch, RadianceBatch& out,
+                 const ClusterLights& lights, DrawnLightsScratch& scratch, RadianceBatch& out,
                  Counters& counters);
 void resolve_draws(const PreparedScene& scene, const WaitingHits& hits, DrawnLightsScratch& scratch,
                    RadianceBatch& out, Counters& counters);

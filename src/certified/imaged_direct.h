@@ -20,7 +20,7 @@ class ImagedDirect final : public DirectLight {
 
   std::unique_ptr<DirectLightScratch> make_scratch() const override;
   WalkedPart walked_part() const override { return straight_->walked_part(); }
-  bool tells_variance() const override { return straight_->tells_variance(); }
+  bool estimates_variance() const override { return straight_->estimates_variance(); }
   std::shared_ptr<const MirrorImages> images() const override { return images_; }
   void begin(const SampleRequest& request, DirectLightScratch& scratch) const override;
   void queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBatch& out,

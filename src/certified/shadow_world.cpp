@@ -81,7 +81,7 @@ void ShadowWorld::trace(std::span<const ShadowSegment> segments, std::span<Shado
     const Hit& hit = hits_[i];
     if (!hit.is_valid() || Occluders::key(hit.geometry, hit.primitive) == segments[i].own) continue;
     const uint32_t id = occluders_.facet_of(hit.geometry, hit.primitive);
-    hits[i] = {id == no_facet ? ray_is_stopped : id, hit.t};
+    hits[i] = {id == no_facet ? ray_hit_non_facet : id, hit.t};
   }
 }
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "certified/lobe_competition.h"
-#include "light/far_cells.h"
+#include "certified/nominal_source_density.h"
+#include "light/sky_patches.h"
 #include "light/web.h"
 #include "shadow/source_task.h"
 #include "transport/prepared_scene.h"
@@ -30,9 +30,9 @@ struct CertifiedSource {
   bool is_back = false;    // the back of a two-sided light
   uint32_t primitive = 0;  // index in LightPrimitives; the first of several
   uint64_t stream = 0;
-  const FarCell* far = nullptr;  // sky patch of an environment light; else null
-  Vec3 towards;                  // unit direction from the scene's centre to the patch's
-  float solid_angle = 0;         // of the sky patch, sr
+  const SkyPatch* far = nullptr;  // sky patch of an environment light; else null
+  Vec3 towards;                   // unit direction from the scene's centre to the patch's
+  float solid_angle = 0;          // of the sky patch, sr
 
   Box bounds() const;
   // Projected solid angle at x with unit normal n, unoccluded, sr.
@@ -43,7 +43,7 @@ struct CertifiedSource {
 struct GlossyHit {
   Frame frame;
   Vec3 wo;
-  LobePlace place;
+  SurfacePlace place;
   Bsdf diffuse, rough;  // `rough` competes with spawned rays (MIS)
   bool has_diffuse = false, has_rough = false;
   bool is_low_variance = false;  // SurfaceScattering::is_low_variance; not rough
@@ -52,7 +52,7 @@ struct GlossyHit {
 };
 
 // Returns BRDF × cosine towards the unit world direction wi: the diffuse part, plus the rough part
-// times its MIS weight. density: LobeCompetition::density() at wi.
+// times its MIS weight. density: NominalSourceDensity::density() at wi.
 Rgb glossy_value(const GlossyHit& hit, const Vec3& wi, float density);
 
 // Returns the mean BRDF at x for light from a source, over four of its points, or at a sphere's
@@ -80,7 +80,8 @@ struct GlossyLanes {
 class SourceIntegrand final : public ShadowIntegrand {
  public:
   // points: number of points per source at which gloss and textures are evaluated.
-  SourceIntegrand(const PreparedScene& scene, uint32_t points, const LobeCompetition& competition)
+  SourceIntegrand(const PreparedScene& scene, uint32_t points,
+                  const NominalSourceDensity& competition)
       : scene_(scene), points_(points), competition_(competition) {}
 
   // The current cluster's hits, and the sources of its requests, which must not move.
@@ -133,7 +134,7 @@ class SourceIntegrand final : public ShadowIntegrand {
 
   const PreparedScene& scene_;
   uint32_t points_;
-  LobeCompetition competition_;
+  NominalSourceDensity competition_;
   std::vector<IntegrandHit> hits_;
   std::vector<const CertifiedSource*> sources_;
   std::vector<PanesBetween> behind_panes_;

@@ -15,7 +15,7 @@ class StagedDirect final : public DirectLight {
 
   std::unique_ptr<DirectLightScratch> make_scratch() const override;
   WalkedPart walked_part() const override { return first_->walked_part(); }
-  bool tells_variance() const override { return first_->tells_variance(); }
+  bool estimates_variance() const override { return first_->estimates_variance(); }
   void begin(const SampleRequest& request, DirectLightScratch& scratch) const override;
   void queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBatch& out,
              Counters& counters) const override;

@@ -43,12 +43,12 @@ void WaitingHits::add_matte(const Walk& walk, const Vertex& v, Rgb reflectance, 
 }
 
 void WaitingHits::add_glossy(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering,
-                             const LobeCompetition& competition, bool direct) {
+                             const NominalSourceDensity& competition, bool direct) {
   add(walk, v, walk.throughput, direct);
   glossy.back() = int32_t(glossy_hits.size());
-  const LobePlace place = scattering.has_rough
-                              ? competition.place(v.surface.position, v.geometric_normal)
-                              : LobePlace{v.surface.position, v.geometric_normal};
+  const SurfacePlace place = scattering.has_rough
+                                 ? competition.place(v.surface.position, v.geometric_normal)
+                                 : SurfacePlace{v.surface.position, v.geometric_normal};
   glossy_hits.push_back({v.frame, v.wo, place, scattering.diffuse, scattering.specular,
                          scattering.has_diffuse, scattering.has_rough, scattering.is_low_variance,
                          scattering.is_gathered});

@@ -30,7 +30,7 @@ struct WaitingHits {
   // Adds a hit at v. direct: its light counts as direct light.
   void add_matte(const Walk& walk, const Vertex& v, Rgb reflectance, bool direct);
   void add_glossy(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering,
-                  const LobeCompetition& competition, bool direct);
+                  const NominalSourceDensity& competition, bool direct);
 
  private:
   void add(const Walk& walk, const Vertex& v, const Rgb& weight, bool direct);

@@ -183,7 +183,7 @@ PerezSky perez_sky(double direct_normal, double diffuse_horizontal, double sun_z
     sky.shape.d = float(at(row[3], z, delta));
   }
   if (!(horizontal_integral(sky.shape, z) > 0))
-    sky.shape = even_sky();  // outside the measured range
+    sky.shape = uniform_sky();  // outside the measured range
   const Row &f = diffuse_efficacy[bin], &r = direct_efficacy[bin];
   sky.diffuse_lx = diffuse_horizontal *
                    (f[0] + f[1] * water_cm + f[2] * std::cos(z) + f[3] * std::log(brightness));

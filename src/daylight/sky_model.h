@@ -22,7 +22,7 @@ constexpr double sun_angular_radius_deg = 0.533 / 2;
 // Returns one of the 15 standard general skies [1, table 1]; type is in [1, 15].
 SkyShape cie_sky(int type);
 // Returns a sky of uniform luminance.
-inline SkyShape even_sky() {
+inline SkyShape uniform_sky() {
   return {};
 }
 

@@ -100,9 +100,7 @@ void GltfMaterialWriter::add_base(const Material& m, Json& out) {
     base = {normal_reflectance(m) * m.specular_color.value, m.specular_color.texture};
   ColorChange change;
   if (m.kind == MaterialKind::coated_diffuse)
-    change = [f = mean_reflectance_inside(double(m.ior))](float v) {
-      return as_of_white_base(v, f);
-    };
+    change = [f = mean_reflectance_inside(double(m.ior))](float v) { return to_white_base(v, f); };
   const bool has_alpha_image = m.is_alpha_masked && has_image(scene_, m.alpha.texture);
   const float alpha = !m.is_alpha_masked ? 1
                       : has_alpha_image  ? m.alpha.value

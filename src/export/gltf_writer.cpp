@@ -12,7 +12,7 @@
 #include "export/gltf_materials.h"
 #include "export/scene_parts.h"
 #include "export/vertex_colors.h"
-#include "scene/turn_to_y.h"
+#include "scene/rotation_to_y.h"
 
 namespace troffer {
 
@@ -243,7 +243,7 @@ Json GltfWriter::file() {
   json["scene"] = 0;
   Json top = Json::array();
   for (size_t i = 0; i < nodes_.size(); ++i) top.push_back(i);
-  const std::array<Vec3d, 3> turn = turn_to_y(up_);
+  const std::array<Vec3d, 3> turn = rotation_to_y(up_);
   const bool is_turned = turn[1] != Vec3d{0, 1, 0};
   if (scene_.origin != Vec3d{} || is_turned) {
     // A top node turns the scene so that y is up, and moves it by its origin.

@@ -104,7 +104,7 @@ std::string Writer::goniometric(const Light& e) {
 // `fov` is that of the shorter side. The picture's top points along the light's y.
 std::string Writer::projection(const Light& e) {
   const Texture& t = scene_.textures[size_t(e.texture)];
-  if (e.lights_plane_evenly)
+  if (e.has_uniform_plane)
     warnings_.add("pbrt's projected pictures are darker towards their rims than Mitsuba's");
   const std::string file =
       files_.write(fmt::format("slide{}.png", images_++),

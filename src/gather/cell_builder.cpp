@@ -33,7 +33,7 @@ constexpr size_t refining_tasks_at_a_time = 1 << 16;
 using Clock = std::chrono::steady_clock;
 
 // Everything that the pilot's gather rays have seen.
-struct Asking {
+struct PilotResult {
   size_t askers = 0;           // viewing rays and points
   std::vector<PilotHit> seen;  // hits, one task after the other
   std::vector<size_t> end;     // end of each task in `seen`
@@ -81,7 +81,7 @@ class Builder {
   std::shared_ptr<CellMap> map_;
   CellRows rows_;
   RowPlan plan_;
-  Asking asking_;
+  PilotResult asking_;
   size_t entries_kept_ = 0;  // number of entries of rows_ that the store had
   CellStatistics statistics_;
 };
@@ -135,7 +135,7 @@ void Builder::ask(const CellPilot& pilot) {
     tasks.emplace_back().weight = p.weight;
   }
   start_map(seen);
-  map_->look_closely(options_.points.most_rays > 0, options_.threads);
+  map_->resolve_narrow(options_.points.most_rays > 0, options_.threads);
   map_->halve_where(uneven_cells(scene_));
   for (const CellSeen& c : seen.seen) {
     const uint32_t cell = map_->add(c.hit, c.distance, true);
@@ -241,7 +241,7 @@ double Builder::rays_for_points(const DirectLight& direct, const CellPilot& pilo
   for (const Rgb& e :
        direct_light_at(pilot.places, walks_, direct, options_.threads, stop_, counters_))
     straight.push_back(luminance(e));
-  CellsOff off{rows_.differences(light.irradiance, options_.threads), lit.half_difference};
+  CellErrors off{rows_.differences(light.irradiance, options_.threads), lit.half_difference};
   for (uint32_t c = 0; c < map_->size(); ++c)
     if (map_->is_narrow(c)) off.by_rows[c] = off.by_hits[c] = 0;
   const PointsNoise noise = noise_at_points(points, straight, rows_, light.irradiance, off,
@@ -309,8 +309,8 @@ std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, const CellPilo
   statistics_.size = double(map_->size_of_cells());
   statistics_.bytes = double(map_->bytes()) + double(rows_.entry_count()) * sizeof(RowEntry) +
                       double(noise.size() * sizeof(NoiseDraws));
-  BrightPlaces bright(scene_.tracer, std::move(asking_.seen), light.irradiance,
-                      map_->size_of_cells());
+  LitRegions bright(scene_.tracer, std::move(asking_.seen), light.irradiance,
+                    map_->size_of_cells());
   keep(lit);
   statistics_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return std::make_unique<Cells>(scene_, std::move(map_), std::move(lit.irradiance),

@@ -138,7 +138,7 @@ void sample_group(const CellMap& map, const GatherWalks& walks, std::span<const 
   const size_t n = w.arrivals.size();
   w.gather.light.reset(n);
   const CheckContext context(&w, n, name_of_hit);
-  walks.light_up(w.arrivals, w.gather, w.counters);
+  walks.sample_direct_light(w.arrivals, w.gather, w.counters);
   size_t index = 0;
   for (const uint32_t c : cells)
     set(light, c, map.hits(c).empty() ? 0 : samples[c], [&](size_t) {

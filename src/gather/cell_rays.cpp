@@ -89,7 +89,7 @@ void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const C
       seen.cell = cell;
     }
     keep_one_of_each(w.close);
-    if (!w.close.empty()) walks.light_up(w.close, g, w.counters);
+    if (!w.close.empty()) walks.sample_direct_light(w.close, g, w.counters);
     for (size_t i = 0; i < w.tasks.size(); ++i)
       emission[w.tasks[i]] +=
           (g.light.direct[i] + g.light.indirect[i]) * (pi_f * w.scales[w.tasks[i] - chunk.first]);

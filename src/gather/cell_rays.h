@@ -38,7 +38,7 @@ struct CellsSeen {
 };
 
 // Traces all tasks. map: null, or the map in which cells are looked up; then rays resolve sub-cell
-// features if the map does (CellMap::look_closely). group: may be null. Incomplete once `stop` is
+// features if the map does (CellMap::resolve_narrow). group: may be null. Incomplete once `stop` is
 // set.
 void trace_cell_rays(const GatherWalks& walks, const CellMap* map, std::span<const CellTask> tasks,
                      int threads, ProcessGroup* group, const StopFlag& stop, CellsSeen& out,

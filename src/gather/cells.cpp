@@ -19,7 +19,7 @@ constexpr int most_bounces = 16;
 constexpr int short_bounces = 4, most_short = 8;
 // Rays that are followed together: few enough to stay in the caches.
 constexpr size_t rays_of_part = 256;
-// Test of look_closely_where_worth_it(): places, rays per place, and the largest acceptable
+// Test of resolve_narrow_where_worth_it(): places, rays per place, and the largest acceptable
 // variance relative to that without looking closely.
 constexpr size_t most_tried = 16;
 constexpr uint32_t rays_of_try = 1024;
@@ -56,7 +56,7 @@ CellLightAt Cells::light_at(const CellHit& hit) const {
 bool Cells::look_up(const GatherArrival& a, uint64_t voxel, int bounce, CellsScratch& s) const {
   const uint32_t cell = map_->find(a.hit, a.distance, voxel);
   if (cell == no_cell) return false;
-  if (bounce == 0 && looks_closely_ && map_->is_narrow(cell)) return false;
+  if (bounce == 0 && resolves_narrow_ && map_->is_narrow(cell)) return false;
   const uint32_t ray = a.walk.index;
   if (a.distance < map_->near() && bounce == 0) {
     s.part.irradiance[ray] += a.walk.throughput * direct_[cell];
@@ -103,22 +103,22 @@ void Cells::gather_part(size_t rays, CellsScratch& s, Counters& counters) const 
     s.again.clear();
     s.voxels.clear();
     for (const GatherArrival& a : s.arrivals)
-      s.voxels.push_back(map_->expect_voxel(a.hit, a.distance));
-    for (const uint64_t voxel : s.voxels) map_->expect_cell(voxel);
+      s.voxels.push_back(map_->prefetch_voxel(a.hit, a.distance));
+    for (const uint64_t voxel : s.voxels) map_->prefetch_cell(voxel);
     size_t missed = 0;
     for (size_t i = 0; i < s.arrivals.size(); ++i) {
       const GatherArrival& a = s.arrivals[i];
       float& distance = s.part.distance[a.walk.index];
       if (bounce == 0 && (distance == 0 || a.length < distance)) distance = a.length;
       // A ray shorter than the cell is wide does not see the mean of the cell.
-      const float short_ray = (bounce > 0 && tells_noise() ? 1.0f : 0.25f) * map_->near();
+      const float short_ray = (bounce > 0 && has_noise_draws() ? 1.0f : 0.25f) * map_->near();
       const bool is_short =
-          a.distance < short_ray && bounce < (tells_noise() ? most_short : short_bounces);
+          a.distance < short_ray && bounce < (has_noise_draws() ? most_short : short_bounces);
       if (is_short || !look_up(a, s.voxels[i], bounce, s)) s.arrivals[missed++] = a;
     }
     s.arrivals.resize(missed);
     if (bounce > 0) keep_one_of_each(s.arrivals);
-    if (!s.arrivals.empty()) walks_.light_up(s.arrivals, s.gather, counters);
+    if (!s.arrivals.empty()) walks_.sample_direct_light(s.arrivals, s.gather, counters);
     for (size_t i = 0; i < rays; ++i)
       s.part.irradiance[i] += (s.gather.light.direct[i] + s.gather.light.indirect[i]) * pi_f;
     s.again.insert(s.again.end(), s.arrivals.begin(), s.arrivals.end());
@@ -153,11 +153,11 @@ double Cells::variance_of_rays(std::span<const CellHit> places, uint64_t seed,
   return tried > 0 ? sum_of_variances / double(tried) : 0;
 }
 
-void Cells::look_closely_where_worth_it(std::span<const CellHit> places, uint64_t seed,
-                                        Counters& counters) {
+void Cells::resolve_narrow_where_worth_it(std::span<const CellHit> places, uint64_t seed,
+                                          Counters& counters) {
   const double usual = variance_of_rays(places, seed, counters);
-  looks_closely_ = true;
-  if (variance_of_rays(places, seed, counters) > most_times_usual * usual) looks_closely_ = false;
+  resolves_narrow_ = true;
+  if (variance_of_rays(places, seed, counters) > most_times_usual * usual) resolves_narrow_ = false;
 }
 
 }  // namespace troffer

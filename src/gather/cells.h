@@ -1,6 +1,6 @@
-// Light between surfaces, solved on cache cells (cells/cell_map.h, docs/method/cells.md), and its lookup
-// by gather rays. Made by make_cells() (cell_builder.h); used by GatherPass and CellsIndirect. Any
-// number of threads may call const functions, each with its own scratch.
+// Light between surfaces, solved on cache cells (cells/cell_map.h, docs/method/cells.md), and its
+// lookup by gather rays. Made by make_cells() (cell_builder.h); used by GatherPass and
+// CellsIndirect. Any number of threads may call const functions, each with its own scratch.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 #include "cells/cell_map.h"
 #include "cells/noise_draws.h"
-#include "gather/bright_places.h"
 #include "gather/gather_walks.h"
+#include "gather/lit_regions.h"
 
 namespace troffer {
 
@@ -56,7 +56,7 @@ class Cells {
   Cells(const PreparedScene& scene, std::shared_ptr<const CellMap> map, std::vector<Rgb> direct,
         std::vector<Rgb> irradiance, std::vector<float> half_difference,
         std::vector<NoiseDraws> noise, const CellStatistics& statistics,
-        std::shared_ptr<const MirrorImages> images, BrightPlaces bright)
+        std::shared_ptr<const MirrorImages> images, LitRegions bright)
       : map_(std::move(map)),
         direct_(std::move(direct)),
         irradiance_(std::move(irradiance)),
@@ -69,15 +69,15 @@ class Cells {
   const CellStatistics& statistics() const { return statistics_; }
   const GatherWalks& walks() const { return walks_; }
   // True if gather() also returns draws of the noise of cells.
-  bool tells_noise() const { return !noise_.empty(); }
+  bool has_noise_draws() const { return !noise_.empty(); }
   // Lit regions among the cells that the pilot saw.
-  const BrightPlaces& bright_places() const { return bright_; }
+  const LitRegions& lit_regions() const { return bright_; }
 
-  // Makes gather rays resolve sub-cell features from here on (CellMap::look_closely). Does nothing
-  // if tests at some of these places show that it costs too much variance: amid clutter, or where
-  // lights are hard to sample.
-  void look_closely_where_worth_it(std::span<const CellHit> places, uint64_t seed,
-                                   Counters& counters);
+  // Makes gather rays resolve sub-cell features from here on (CellMap::resolve_narrow). Does
+  // nothing if tests at some of these places show that it costs too much variance: amid clutter, or
+  // where lights are hard to sample.
+  void resolve_narrow_where_worth_it(std::span<const CellHit> places, uint64_t seed,
+                                     Counters& counters);
 
   // Follows s.walks, of ascending indices below `rays`, and puts what they see into s.light.
   void gather(size_t rays, CellsScratch& s, Counters& counters) const;
@@ -98,8 +98,8 @@ class Cells {
   std::vector<float> half_difference_;
   std::vector<NoiseDraws> noise_;  // empty: unknown
   CellStatistics statistics_;
-  BrightPlaces bright_;
-  bool looks_closely_ = false;
+  LitRegions bright_;
+  bool resolves_narrow_ = false;
   GatherWalks walks_;
 };
 

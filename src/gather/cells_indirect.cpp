@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "gather/gather_lobe.h"
-#include "gather/sensor_aims.h"
+#include "gather/sensor_distributions.h"
 
 namespace troffer {
 
@@ -62,8 +62,8 @@ struct CellsIndirect::Scratch final : IndirectLightScratch {
   std::vector<uint32_t> indices, ends;
   // Per ray: factor from the irradiance that it brings to light of the viewing ray.
   std::vector<Rgb> weights;
-  SensorAims aims;
-  GatherRecords::KnownAim aim;
+  SensorDistributions aims;
+  GatherRecords::CachedDistribution aim;
   void clear() {
     cells.walks.clear();
     indices.clear();
@@ -107,7 +107,7 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
                           Counters&) const {
   auto& s = static_cast<Scratch&>(scratch);
   out.enable_shared_error();
-  static const GatherAim by_cosine;
+  static const GatherDistribution by_cosine;
   CheckItems items;
   for (size_t i = 0; i < wave.size(); ++i) {
     const SurfaceScattering& scattering = wave.scatterings[i];
@@ -126,19 +126,19 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
       continue;
     }
     FittedRecord fitted;
-    const GatherAim* aim = &by_cosine;
+    const GatherDistribution* aim = &by_cosine;
     if (at.scatterings == 0 && records_ && !wave.viewing->pixels.empty()) {
       const PixelAt& pixel = wave.viewing->pixels[at.index];
       if (records_->irradiance_at(pixel.x, pixel.y, hit, gloss_of(v, scattering), false, fitted)) {
         const Rgb light = weights.matte * fitted.irradiance + weights.gloss * fitted.gloss;
         out.indirect[at.index] += light;
-        out.indirect_with_error[at.index] += luminance(light);
+        out.luminance_with_error[at.index] += luminance(light);
         out.shared_error[at.index] +=
             luminance(weights.matte) * fitted.error + luminance(weights.gloss) * fitted.gloss_error;
         continue;
       }
       records_->irradiance_at(pixel.x, pixel.y, hit, gloss_of(v, scattering), true, fitted);
-      aim = &records_->aim_at(pixel.x, pixel.y, hit, cells_->bright_places(), s.aim);
+      aim = &records_->aim_at(pixel.x, pixel.y, hit, cells_->lit_regions(), s.aim);
     }
     const Bsdf& all = scattering.is_gathered ? scattering.whole : scattering.diffuse;
     GatherLobe lobe;
@@ -204,7 +204,7 @@ void CellsIndirect::flush(IndirectLightScratch& scratch, RadianceBatch& out,
     const auto n = float(s.ends[i] - first);
     first = s.ends[i];
     out.indirect[s.indices[i]] += sum * (1 / n);
-    out.indirect_with_error[s.indices[i]] += luminance(sum) / n;
+    out.luminance_with_error[s.indices[i]] += luminance(sum) / n;
     out.drawn_error[s.indices[i]] += halves / n;
     if (out.direct_variance.empty()) continue;
     // A single ray has no spread: its variance is taken to be half of its square.
@@ -220,7 +220,7 @@ void CellsIndirect::gather(const SensorBatch& sensors, IndirectLightScratch& scr
                            RadianceBatch& out, Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
   s.clear();
-  s.aims.begin(cells_->bright_places(), sensors);
+  s.aims.begin(cells_->lit_regions(), sensors);
   for (uint32_t i = 0; i < sensors.size(); ++i) {
     Walk walk = sensor_walk(sensors, i);
     const CellHit at = hit_of(sensors, i);

@@ -58,8 +58,8 @@ float GatherLobe::second_moment() const {
   return pi_f * sum / float(places.size());
 }
 
-Vec3 GatherLobe::direction(const GatherAim& aim, const CellHit& at, Vec2 number, float lobe_number,
-                           float& weight) const {
+Vec3 GatherLobe::direction(const GatherDistribution& aim, const CellHit& at, Vec2 number,
+                           float lobe_number, float& weight) const {
   if (by_lobe_ == 0) return aim.direction(at, number, weight);
   Vec3 world;
   float by_lobe = 0;
@@ -81,7 +81,8 @@ Vec3 GatherLobe::direction(const GatherAim& aim, const CellHit& at, Vec2 number,
   return world;
 }
 
-float set_out(const CellHit& from, const GatherAim& aim, const GatherLobe& lobe, Walk& walk) {
+float set_out(const CellHit& from, const GatherDistribution& aim, const GatherLobe& lobe,
+              Walk& walk) {
   float weight = 1;
   const float which = lobe.by_lobe() > 0 ? lobe_number(walk) : 0;
   set_out(from, lobe.direction(aim, from, direction_number(walk), which, weight), walk);

@@ -12,7 +12,7 @@
 #include "base/rgb.h"
 #include "base/vec.h"
 #include "bsdf/bsdf.h"
-#include "gather/bright_places.h"
+#include "gather/lit_regions.h"
 #include "transport/walk.h"
 
 namespace troffer {
@@ -33,7 +33,7 @@ class GatherLobe {
   Rgb share_of(const Vec3& direction) const;
   // Returns the direction of a ray. weight: what the ray counts, relative to a cosine-distributed
   // one; 0 if the lobe sends nothing there.
-  Vec3 direction(const GatherAim& aim, const CellHit& at, Vec2 number, float lobe_number,
+  Vec3 direction(const GatherDistribution& aim, const CellHit& at, Vec2 number, float lobe_number,
                  float& weight) const;
   // Share of rays drawn by the lobe.
   float by_lobe() const { return by_lobe_; }
@@ -50,6 +50,7 @@ class GatherLobe {
 
 // Sends a gather ray out, by the walk's random numbers. Returns what it counts relative to a
 // cosine-distributed ray, and multiplies the walk's throughput by it.
-float set_out(const CellHit& from, const GatherAim& aim, const GatherLobe& lobe, Walk& walk);
+float set_out(const CellHit& from, const GatherDistribution& aim, const GatherLobe& lobe,
+              Walk& walk);
 
 }  // namespace troffer

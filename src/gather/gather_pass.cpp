@@ -218,8 +218,8 @@ void GatherPass::see(Tile& tile, Worker& w) const {
     if (counts[r] > 0) from.push_back(tile.records[r].hit);
     rays += counts[r];
   }
-  tile.sight = cells_.bright_places().sight_from(from, rays / rays_for_sight);
-  BrightTally tally;
+  tile.sight = cells_.lit_regions().visibility_from(from, rays / rays_for_sight);
+  GuidingStatistics tally;
   gather(tile.records, counts, tile, places, Rays::first, w, &tally);
   tally.tell(tile.sight);
 }
@@ -228,7 +228,7 @@ void GatherPass::see(Tile& tile, Worker& w) const {
 // (above).
 void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<uint32_t>& counts,
                         const Tile& tile, const std::vector<uint32_t>& places, Rays which,
-                        Worker& w, BrightTally* tally) const {
+                        Worker& w, GuidingStatistics* tally) const {
   std::vector<Walk>& walks = w.cells.walks;
   walks.clear();
   std::vector<uint32_t> owners;
@@ -236,7 +236,7 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
   std::vector<float> shares;   // per ray: the coat's factor for its light
   std::vector<float> weights;  // per ray: what it counts relative to a cosine-distributed one
   std::vector<GatherLobe> lobes;
-  std::vector<GatherAim> aims;
+  std::vector<GatherDistribution> aims;
   const bool is_further = which == Rays::further;
   for (uint32_t r = 0; r < records.size(); ++r) {
     const GatherLobe& lobe = lobes.emplace_back(make_lobe(cells_.walks(), counts[r], records[r]));
@@ -245,7 +245,8 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
     const uint32_t lattice = is_thinned_ ? class_of(places[r]) : 0,
                    place = (places[r] & 255) >> (is_thinned_ ? 2 : 0);
     const Bsdf coat = cells_.walks().coat_at(records[r].hit);
-    const GatherAim& aim = aims.emplace_back(cells_.bright_places(), tile.sight, records[r].hit);
+    const GatherDistribution& aim =
+        aims.emplace_back(cells_.lit_regions(), tile.sight, records[r].hit);
     for (uint32_t k = 0; k < counts[r]; ++k) {
       Walk walk;
       walk.index = uint32_t(owners.size());

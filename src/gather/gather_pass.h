@@ -30,7 +30,7 @@ class GatherPass {
     int x = 0, y = 0;    // first pixel of the tile in the tiling of the whole picture
     std::vector<GatherRecord> records;  // pixel by pixel, row by row; empty after join()
     std::vector<uint16_t> counts;       // records of each pixel
-    BrightSight sight;                  // lit regions as seen from the tile's surfaces
+    RegionVisibility sight;             // lit regions as seen from the tile's surfaces
   };
   struct Worker {
     Worker() { viewing.is_view = true; }
@@ -60,13 +60,13 @@ class GatherPass {
 
   bool has_close_pixels(Worker& w) const;
   bool thin(std::vector<Tile>& tiles, Counters& counters);
-  bool is_spared(int x, int y, uint32_t r) const;
+  bool is_redundant(int x, int y, uint32_t r) const;
   void leave_out(const std::vector<uint8_t>& is_left_out);
   void see(Tile& tile, Worker& w) const;
   Ray ray_of(int x, int y, float& spread) const;
   void gather(std::vector<GatherRecord>& records, const std::vector<uint32_t>& counts,
               const Tile& tile, const std::vector<uint32_t>& places, Rays which, Worker& w,
-              BrightTally* tally = nullptr) const;
+              GuidingStatistics* tally = nullptr) const;
   void join(std::vector<Tile>& tiles);
   bool is_beside(int x, int y, uint32_t r) const;
   float usual_rays(int x, int y, uint32_t r) const;

@@ -41,8 +41,9 @@ std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const Pic
   return records;
 }
 
-const GatherAim& GatherRecords::aim_at(int x, int y, const CellHit& hit, const BrightPlaces& places,
-                                       KnownAim& last) const {
+const GatherDistribution& GatherRecords::aim_at(int x, int y, const CellHit& hit,
+                                                const LitRegions& places,
+                                                CachedDistribution& last) const {
   const CellHit* at = &hit;
   uint32_t record = no_record;
   of_pixel(x, y, [&](uint32_t r) {
@@ -59,7 +60,8 @@ const GatherAim& GatherRecords::aim_at(int x, int y, const CellHit& hit, const B
   const int across = (window_.x1 + tile_side - 1) / tile_side - x0;
   const auto tile = size_t(y / tile_side - y0) * size_t(across) + size_t(x / tile_side - x0);
   const size_t n = places.all().size();
-  last = {GatherAim(places, std::span(visible_).subspan(tile * n, n), rest_[tile], *at), record};
+  last = {GatherDistribution(places, std::span(visible_).subspan(tile * n, n), rest_[tile], *at),
+          record};
   return last.aim;
 }
 

@@ -93,15 +93,15 @@ class GatherRecords {
                      FittedRecord& out) const;
   // An aim and its record; no_record: for a place without one.
   static constexpr uint32_t no_record = 0xffffffffu;
-  struct KnownAim {
-    GatherAim aim;
+  struct CachedDistribution {
+    GatherDistribution aim;
     uint32_t record = no_record;
   };
   // Returns the distribution of gather rays at a place that pixel (x, y) sees. It is that of the
   // pixel's last record on the same surface, if there is one, so that one aim serves many rays.
   // `last`: the caller's cache, for these records only.
-  const GatherAim& aim_at(int x, int y, const CellHit& hit, const BrightPlaces& places,
-                          KnownAim& last) const;
+  const GatherDistribution& aim_at(int x, int y, const CellHit& hit, const LitRegions& places,
+                                   CachedDistribution& last) const;
   size_t bytes() const {
     return records_.capacity() * sizeof(GatherRecord) + fitted_.capacity() * sizeof(FittedRecord) +
            first_.capacity() * sizeof(uint32_t) +
@@ -123,7 +123,7 @@ class GatherRecords {
   std::vector<uint32_t> first_;  // first record of each pixel, and the end
   std::vector<GatherRecord> records_;
   std::vector<FittedRecord> fitted_;
-  // Per tile, row by row: visibility of each lit region, and BrightSight::rest.
+  // Per tile, row by row: visibility of each lit region, and RegionVisibility::rest.
   std::vector<float> visible_, rest_;
 };
 

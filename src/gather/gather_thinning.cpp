@@ -66,7 +66,7 @@ bool GatherPass::has_close_pixels(Worker& w) const {
 
 // True if the records of lattice pixels around say all about this one: all see the same surface,
 // and light is nearly linear between them.
-bool GatherPass::is_spared(int x, int y, uint32_t r) const {
+bool GatherPass::is_redundant(int x, int y, uint32_t r) const {
   const GatherRecord& at = out_.records_[r];
   if (is_on_lattice(x, y) || beside_[r] != 0) return false;
   int around_it = 0, alike = 0;
@@ -92,7 +92,7 @@ bool GatherPass::is_spared(int x, int y, uint32_t r) const {
 bool GatherPass::thin(std::vector<Tile>& tiles, Counters& counters) {
   std::vector<uint8_t> is_left_out(out_.records_.size());
   if (!for_records(tiles, counters, is_left_out,
-                   [&](int x, int y, uint32_t r) { return uint8_t(is_spared(x, y, r)); }))
+                   [&](int x, int y, uint32_t r) { return uint8_t(is_redundant(x, y, r)); }))
     return false;
   leave_out(is_left_out);
   wanted_.resize(out_.records_.size());

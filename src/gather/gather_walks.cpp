@@ -15,7 +15,7 @@ namespace {
 
 // Note of walks that come from a matte surface: they count neither direct light nor light of mirror
 // images.
-constexpr uint32_t from_matte = MirrorImages::from_matte;
+constexpr uint32_t note_from_matte = MirrorImages::note_from_matte;
 
 // Thresholds of Russian roulette at gloss that a ray meets. Below them a light is sampled, or the
 // ray continued, with a probability in proportion to the light carried. The gloss of varnish or
@@ -70,7 +70,7 @@ void set_out(const CellHit& from, const Vec3& wi, Walk& walk) {
   walk.last_position = from.position;
   walk.last_normal = from.horizon;
   walk.last_both_sides = false;
-  walk.last_place = from_matte;
+  walk.last_place = note_from_matte;
   // Unfiltered texels, as in paths. A mean over the ray's footprint would include other parts of an
   // image, and texels that no surface shows.
   walk.cone = {};
@@ -136,7 +136,7 @@ void GatherWalks::see(const Walk& walk, Rgb radiance, float weight, GatherScratc
 
 // True if the walk has to count emission of this light.
 bool GatherWalks::counts(const Walk& walk, uint32_t light) const {
-  if (walk.last_place == from_matte) return false;
+  if (walk.last_place == note_from_matte) return false;
   return !images_ || !images_->is_shown(walk.last_place, light);
 }
 
@@ -227,11 +227,11 @@ void GatherWalks::go_on(const Walk& walk, const Vertex& v, const SurfaceScatteri
   // Roulette needs albedo(), which does not cover panes and clear coats.
   const bool is_spread = scattering.has_rough && !s.is_view;
   const bool is_told = !scattering.specular.is_pane && !scattering.specular.clear.has_lobe();
-  const auto light = [&](const Walk& lit, float going_on) {
+  const auto light = [&](const Walk& lit, float continuation_ratio) {
     s.rough.walks.push_back(lit);
     s.rough.vertices.push_back(v);
     s.rough.bsdfs.push_back(scattering.specular);
-    s.rough.going_on.push_back(going_on);
+    s.rough.continuation_ratio.push_back(continuation_ratio);
   };
   const auto sets_out = [&](Walk& next) {
     next.length += distance;
@@ -307,8 +307,8 @@ void GatherWalks::bounce(std::vector<GatherArrival>& arrivals, GatherScratch& s)
   }
 }
 
-void GatherWalks::light_up(const std::vector<GatherArrival>& arrivals, GatherScratch& s,
-                           Counters& counters) const {
+void GatherWalks::sample_direct_light(const std::vector<GatherArrival>& arrivals, GatherScratch& s,
+                                      Counters& counters) const {
   // In groups with the same number of vertices behind them.
   for (size_t first = 0, end = 0; first < arrivals.size(); first = end) {
     while (end < arrivals.size() && arrivals[end].walk.vertex == arrivals[first].walk.vertex) ++end;

@@ -80,8 +80,8 @@ class GatherWalks {
   Bsdf white_at(const CellHit& hit, float reflectance) const;
   // Samples direct light at arrivals, once each and once per mirror image. Adds irradiance ×
   // throughput / π to s.light.
-  void light_up(const std::vector<GatherArrival>& arrivals, GatherScratch& s,
-                Counters& counters) const;
+  void sample_direct_light(const std::vector<GatherArrival>& arrivals, GatherScratch& s,
+                           Counters& counters) const;
 
  private:
   void arrive_all(GatherScratch& s) const;

@@ -72,7 +72,7 @@ double weight_of(const PointGathers& g, double mean) {
 
 PointsNoise noise_at_points(const PointsSeen& points, const std::vector<float>& direct,
                             const CellRows& rows, const std::vector<Rgb>& light,
-                            const CellsOff& off, const GatheringPoints& how, int threads) {
+                            const CellErrors& off, const GatheringPoints& how, int threads) {
   TROFFER_CHECK(points.end.size() == PointsSeen::sets * direct.size());
   PointsNoise noise{.other_rays = how.other_rays};
   if (points.rays == 0) return noise;

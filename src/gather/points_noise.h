@@ -38,7 +38,7 @@ struct PointsSeen {
 };
 
 // One draw of the error of each cell by itself: luminance.
-struct CellsOff {
+struct CellErrors {
   std::vector<float> by_rows;  // by the choice of its rays, and partly of the hits that they leave
   std::vector<float> by_hits;  // by the choice of hits at which direct light is computed
 };
@@ -46,7 +46,7 @@ struct CellsOff {
 // Variances, averaged over points. Each point's is weighted by the mean of 1 / light² of the point,
 // all light included, and 1 / mean² of the list.
 struct PointsNoise {
-  double by_rows = 0, by_hits = 0;  // by the errors of CellsOff
+  double by_rows = 0, by_hits = 0;  // by the errors of CellErrors
   double by_gather = 0;             // by gather rays
   double gather_rays = 0;           // number of gather rays of all points
   double other_rays = 0;            // GatheringPoints::other_rays
@@ -57,7 +57,7 @@ struct PointsNoise {
 // cosine-distributed gather rays; guided and stratified ones are fewer or err less.
 PointsNoise noise_at_points(const PointsSeen& points, const std::vector<float>& direct,
                             const CellRows& rows, const std::vector<Rgb>& light,
-                            const CellsOff& off, const GatheringPoints& how, int threads);
+                            const CellErrors& off, const GatheringPoints& how, int threads);
 
 // Returns how many times as many rays the cells are worth, at least 1. A ray of a cell and one of a
 // point cost the same, and the time for a given error is to be least. With G rays of points, others

@@ -138,7 +138,7 @@ ColoursFound obey_profile(Raster& raster, const std::vector<uint8_t>& bytes) {
 
 }  // namespace
 
-ColoursFound obey_own_colours(Raster& raster) {
+ColoursFound convert_to_srgb(Raster& raster) {
   const OwnColours own = std::move(raster.own);
   raster.own = {};
   if (own.is_empty() || !raster.is_srgb) return ColoursFound::none;

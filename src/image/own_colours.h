@@ -1,5 +1,5 @@
 // Colour information of picture files (PNG gamma, ICC profiles), and its conversion to sRGB.
-// Importers of textures call obey_own_colours() after decode_raster().
+// Importers of textures call convert_to_srgb() after decode_raster().
 // References: [1] ICC.1:2022, "Image technology colour management".
 #pragma once
 
@@ -31,6 +31,6 @@ constexpr const char* broken_colours =
 
 // Converts the picture to sRGB, or keeps linear values and clears is_srgb. Alpha is unchanged.
 // 8-bit pictures stay 8-bit, clipped to sRGB. ICC profiles use relative colorimetry [1].
-ColoursFound obey_own_colours(Raster& raster);
+ColoursFound convert_to_srgb(Raster& raster);
 
 }  // namespace troffer

@@ -25,7 +25,7 @@ struct Raster {
   bool is_srgb = false;             // colour channels are sRGB encoded (PNG, JPEG, WebP, BMP, TGA)
   // Primaries of EXR files that state others than Rec. 709.
   std::optional<Primaries> primaries = std::nullopt;
-  // Colour information of PNG and JPEG files; texels are as stored until obey_own_colours().
+  // Colour information of PNG and JPEG files; texels are as stored until convert_to_srgb().
   OwnColours own = {};
 
   // Number of channels without alpha.

@@ -76,7 +76,7 @@ EnvironmentMap read_environment(const std::string& path, WarningLog& warnings) {
   const std::vector<uint8_t> bytes = read_file(path, max_environment_bytes);
   Raster read = decode_raster(bytes, path);
   check_float_size(read, bytes.size(), path);
-  if (obey_own_colours(read) == ColoursFound::broken) warnings.add(path + broken_colours);
+  if (convert_to_srgb(read) == ColoursFound::broken) warnings.add(path + broken_colours);
   const Raster raster = rec709_raster(linear_raster(std::move(read)), false);
   EnvironmentMap map;
   map.name = path;

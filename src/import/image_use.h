@@ -6,7 +6,7 @@
 namespace troffer {
 
 // left_out: missing images' stand-in colours replace all images, lights made of images are omitted,
-// and Scene::left_out_image_bytes counts the bytes not read. For callers that need only the
+// and Scene::skipped_image_bytes counts the bytes not read. For callers that need only the
 // geometry, quickly.
 enum class ImageUse : uint8_t { read, left_out };
 

@@ -48,7 +48,7 @@ Scene import_scene(const std::string& path, const ImportOptions& options) {
   const ReferenceNotes references;
   Scene scene = import_file(path, options);
   for (const std::string& note : references.notes()) scene.warnings.add(note);
-  settle_instances(scene);
+  finalize_instances(scene);
   replace_thin_glass(scene);
   scale_surface_emission(scene, options.emission_scale);
   warn_of_weak_surfaces(scene);

@@ -16,15 +16,16 @@ namespace {
 LightWeb web_of_spot(const Light& e, float cross_section) {
   LightWeb web;
   web.name = e.name;
-  web.turns_rad = {0, 2 * pi_f};
+  web.horizontal_angles_rad = {0, 2 * pi_f};
   web.cross_section = cross_section;
   const double inner = std::acos(std::clamp(double(e.cos_inner), -1.0, 1.0));
   const double outer = std::acos(std::clamp(double(e.cos_outer), -1.0, 1.0));
   constexpr int steps = 64;
   std::vector<float> shares;
   const auto add = [&](double angle, double share) {
-    if (!web.heights_rad.empty() && !(float(angle) > web.heights_rad.back())) return;
-    web.heights_rad.push_back(float(angle));
+    if (!web.vertical_angles_rad.empty() && !(float(angle) > web.vertical_angles_rad.back()))
+      return;
+    web.vertical_angles_rad.push_back(float(angle));
     shares.push_back(float(share));
   };
   add(0, 1);
@@ -35,7 +36,8 @@ LightWeb web_of_spot(const Light& e, float cross_section) {
         1.0);
     add(angle, e.falloff == SpotFalloff::square ? fade * fade : fade * fade * (3 - 2 * fade));
   }
-  if (web.heights_rad.size() < 2) add(std::nextafter(web.heights_rad.back(), 4.0f), 0);
+  if (web.vertical_angles_rad.size() < 2)
+    add(std::nextafter(web.vertical_angles_rad.back(), 4.0f), 0);
   for (int turn = 0; turn < 2; ++turn)
     web.intensities.insert(web.intensities.end(), shares.begin(), shares.end());
   return web;

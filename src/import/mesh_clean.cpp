@@ -117,7 +117,7 @@ void clean_mesh(Mesh& mesh, WarningLog& warnings) {
     });
 }
 
-void show_alone(Mesh mesh, Scene& scene) {
+void add_only_mesh(Mesh mesh, Scene& scene) {
   clean_mesh(mesh, scene.warnings);
   scene.materials.emplace_back();
   if (mesh.triangles.empty()) {

@@ -18,7 +18,7 @@ void clean_mesh(Mesh& mesh, WarningLog& warnings);
 
 // Cleans a mesh and adds it to a scene without materials, with the default material. Warns if no
 // triangle is left.
-void show_alone(Mesh mesh, Scene& scene);
+void add_only_mesh(Mesh mesh, Scene& scene);
 
 // Returns twice the area times the unit normal of the front.
 inline Vec3d area_vector(const Mesh& mesh, const Triangle& t) {

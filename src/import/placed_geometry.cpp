@@ -12,7 +12,7 @@ namespace troffer {
 namespace {
 
 constexpr double circle_tolerance = 1e-5;
-constexpr size_t placed_at_once = size_t(1) << 16;  // items per parallel task
+constexpr size_t items_per_task = size_t(1) << 16;  // items per parallel task
 
 }  // namespace
 
@@ -23,11 +23,11 @@ Vec3d covector(const Affine& t, const Vec3d& n) {
 Mesh transformed(const AnchoredMesh& local, const Affine& t, bool are_normals_turned,
                  bool is_winding_turned) {
   Mesh mesh = local.mesh;
-  parallel_pieces(mesh.positions.size(), placed_at_once, [&](size_t first, size_t end) {
+  parallel_pieces(mesh.positions.size(), items_per_task, [&](size_t first, size_t end) {
     for (size_t i = first; i < end; ++i)
       mesh.positions[i] = Vec3(t.point(local.anchor + Vec3d(mesh.positions[i])));
   });
-  parallel_pieces(mesh.normals.size(), placed_at_once, [&](size_t first, size_t end) {
+  parallel_pieces(mesh.normals.size(), items_per_task, [&](size_t first, size_t end) {
     for (size_t i = first; i < end; ++i) {
       const Vec3d turned = covector(t, Vec3d(mesh.normals[i]));
       // Normalise here, so that small scales do not underflow in float.
@@ -62,7 +62,7 @@ void orient(const Mesh& mesh, Triangle& t, bool is_turned) {
 }  // namespace
 
 void orient(Mesh& mesh, bool is_turned) {
-  parallel_pieces(mesh.triangles.size(), placed_at_once, [&](size_t first, size_t end) {
+  parallel_pieces(mesh.triangles.size(), items_per_task, [&](size_t first, size_t end) {
     for (size_t i = first; i < end; ++i) orient(mesh, mesh.triangles[i], is_turned);
   });
 }
@@ -81,14 +81,14 @@ void GeometryPlacer::spend(size_t triangles, const SourcePlace& place) {
                std::to_string(max_scene_triangles / 1'000'000) + " million triangles)");
 }
 
-bool GeometryPlacer::needs_coordinates(const PlacedLook& look) const {
+bool GeometryPlacer::needs_coordinates(const ShapeAttributes& look) const {
   const Material& m = scene_.materials[look.material];
   return has_textured_input(m) || m.normal_texture >= 0 || m.bump.texture >= 0 ||
          has_own_coat_normal(m) || m.anisotropy.value > 0 || m.is_alpha_masked ||
          (look.emission && look.emission->texture >= 0);
 }
 
-int32_t GeometryPlacer::add_light(const PlacedLook& look, LightKind kind, size_t geometry) {
+int32_t GeometryPlacer::add_light(const ShapeAttributes& look, LightKind kind, size_t geometry) {
   if (!look.emission || look.emission->radiance.is_black()) return no_light;
   Light e;
   e.name = look.emission->name;
@@ -103,7 +103,7 @@ int32_t GeometryPlacer::add_light(const PlacedLook& look, LightKind kind, size_t
 // Without normals, the winding in the world decides the front, and a mirroring transform reverses
 // it. Instances keep their front, so the stored mesh is wound to look the same.
 bool GeometryPlacer::add_instance(const AnchoredMesh& local, const Affine& world_from_local,
-                                  bool is_turned, const PlacedLook& look) {
+                                  bool is_turned, const ShapeAttributes& look) {
   if (look.shape == nullptr || (look.emission && !look.emission->radiance.is_black())) return false;
   const size_t triangles = local.mesh.triangles.size();
   const bool is_mirrored = local.mesh.normals.empty() && world_from_local.swaps_handedness();
@@ -128,7 +128,7 @@ bool GeometryPlacer::add_instance(const AnchoredMesh& local, const Affine& world
 }
 
 void GeometryPlacer::add_mesh(const AnchoredMesh& local, const Affine& world_from_local,
-                              bool is_turned, const PlacedLook& look) {
+                              bool is_turned, const ShapeAttributes& look) {
   if (add_instance(local, world_from_local, is_turned, look)) return;
   spend(std::max(local.mesh.triangles.size(), local.mesh.positions.size() / 3), look.place);
   Affine t = world_from_local;
@@ -148,7 +148,7 @@ void GeometryPlacer::add_mesh(const AnchoredMesh& local, const Affine& world_fro
 }
 
 void GeometryPlacer::add_sphere(const Affine& world_from_local, const Vec3d& centre, double radius,
-                                bool is_turned, const PlacedLook& look) {
+                                bool is_turned, const ShapeAttributes& look) {
   const Affine t = world_from_local * Affine::translate(centre);
   const bool is_round = keeps_circles(t, 0, 1) && keeps_circles(t, 1, 2) && keeps_circles(t, 2, 0);
   if (!is_round || needs_coordinates(look)) {
@@ -175,7 +175,7 @@ void GeometryPlacer::add_sphere(const Affine& world_from_local, const Vec3d& cen
 }
 
 void GeometryPlacer::add_disk(const Affine& world_from_local, double radius, bool is_turned,
-                              const PlacedLook& look) {
+                              const ShapeAttributes& look) {
   const Affine& t = world_from_local;
   if (!keeps_circles(t, 0, 1) || needs_coordinates(look)) {
     add_mesh({tessellate_disk(0, radius, 0, 2 * pi), {}}, t, is_turned, look);

@@ -14,7 +14,7 @@
 namespace troffer {
 
 // Material and emission of a shape, and its place in the file.
-struct PlacedLook {
+struct ShapeAttributes {
   uint32_t material = 0;
   const void* shape = nullptr;           // identity of a shape with several placements; else null
   std::optional<EmissionSpec> emission;  // black: no emission
@@ -34,17 +34,17 @@ class GeometryPlacer {
   // the world if it has none; `is_turned` selects the other side. Normals keep their side under
   // mirroring transforms.
   void add_mesh(const AnchoredMesh& local, const Affine& world_from_local, bool is_turned,
-                const PlacedLook& look);
+                const ShapeAttributes& look);
   // Adds a sphere whose front is outside, or inside if `is_turned`. Tessellates it if the transform
   // is not a similarity or the material depends on (u,v).
   void add_sphere(const Affine& world_from_local, const Vec3d& centre, double radius,
-                  bool is_turned, const PlacedLook& look);
+                  bool is_turned, const ShapeAttributes& look);
   // True if that material or emission depends on (u,v).
-  bool needs_coordinates(const PlacedLook& look) const;
+  bool needs_coordinates(const ShapeAttributes& look) const;
   // Adds a disk around the origin. Its front is the side that +z is mapped to; `is_turned` selects
   // the other side. Tessellates as add_sphere does.
   void add_disk(const Affine& world_from_local, double radius, bool is_turned,
-                const PlacedLook& look);
+                const ShapeAttributes& look);
 
  private:
   Scene& scene_;
@@ -54,10 +54,10 @@ class GeometryPlacer {
   uint64_t placed_triangles_ = 0;
 
   bool add_instance(const AnchoredMesh& local, const Affine& world_from_local, bool is_turned,
-                    const PlacedLook& look);
+                    const ShapeAttributes& look);
   void spend(size_t triangles, const SourcePlace& place);
   // Appends the light of a sphere or disk; returns no_light if it does not emit.
-  int32_t add_light(const PlacedLook& look, LightKind kind, size_t geometry);
+  int32_t add_light(const ShapeAttributes& look, LightKind kind, size_t geometry);
 };
 
 // Returns a mesh in the target space of a transform, not cleaned (mesh_clean.h). The front of each

@@ -76,7 +76,7 @@ Vec3d choose_origin(const Boxd& box) {
 Scene import_recentred(const std::function<void(Scene& scene, PlacedBounds& bounds)>& import,
                        ImageUse images) {
   Scene empty;
-  if (images == ImageUse::left_out) empty.left_out_image_bytes = 0;
+  if (images == ImageUse::left_out) empty.skipped_image_bytes = 0;
   Scene scene = empty;
   PlacedBounds bounds;
   import(scene, bounds);

@@ -57,7 +57,7 @@ uint64_t size_of_left_out(const std::string& path) {
 
 // Converts colours to sRGB's primaries and clips negative values.
 Raster TextureLoader::color_raster(const std::string& key, Raster raster) {
-  if (obeys_own_colours_ && troffer::obey_own_colours(raster) == ColoursFound::broken)
+  if (obeys_own_colours_ && troffer::convert_to_srgb(raster) == ColoursFound::broken)
     scene_.warnings.add(key + broken_colours);
   if (!raster.primaries) return raster;
   raster = rec709_raster(std::move(raster), true);
@@ -94,7 +94,7 @@ int32_t TextureLoader::constant(const std::string& key, const Texture& look) {
 }
 
 bool TextureLoader::decodes_ahead() const {
-  return !scene_.left_out_image_bytes && thread_count(0) > 1;
+  return !scene_.skipped_image_bytes && thread_count(0) > 1;
 }
 
 void TextureLoader::expect(const std::string& key, ImagesAhead::Decode decode) {
@@ -143,8 +143,8 @@ Texture TextureLoader::reduced(Texture texture) {
 int32_t TextureLoader::add(const std::string& key, const Texture& look, const Source& source) {
   const auto same = by_request_.find(request_key(key, look));
   if (same != by_request_.end()) return same->second;
-  if (scene_.left_out_image_bytes) {
-    if (!was_asked_for(key)) *scene_.left_out_image_bytes += source.size();
+  if (scene_.skipped_image_bytes) {
+    if (!was_asked_for(key)) *scene_.skipped_image_bytes += source.size();
     if (!source.file.empty()) FilesRead::note(source.file);
     return constant(key, look);
   }

@@ -22,13 +22,13 @@ inline Rgb stand_in_for_missing(bool is_color) {
   return Rgb{is_color ? 0.5f : 1.0f};
 }
 
-// Returns the bytes that an omitted image adds to Scene::left_out_image_bytes; at least 1, even if
+// Returns the bytes that an omitted image adds to Scene::skipped_image_bytes; at least 1, even if
 // the file is missing.
 uint64_t size_of_left_out(const std::string& path);
 
 // Appends textures to a scene. Equal requests share a texture, and each image is decoded once.
 // A missing or broken image never throws: it gives a warning in Scene::warnings and a constant
-// texture of stand_in_for_missing(). If Scene::left_out_image_bytes is set, all images become such
+// texture of stand_in_for_missing(). If Scene::skipped_image_bytes is set, all images become such
 // constants, without warnings.
 class TextureLoader {
  public:
@@ -39,7 +39,7 @@ class TextureLoader {
 
   // Makes the loader respect gamma and colour profiles of images. Call it for formats that leave
   // colours to the images. By default 8- and 16-bit images are sRGB, as in glTF, pbrt and Mitsuba.
-  void obey_own_colours() { obeys_own_colours_ = true; }
+  void convert_to_srgb() { obeys_own_colours_ = true; }
 
   // True if announcing images in advance has an effect.
   bool decodes_ahead() const;

@@ -57,7 +57,7 @@ struct PointEmitter : NoSurface {
     float largest = 1;
     if (e.texture != no_texture) {
       p.mean_radiance = e.radiance * projected_flux(scene, e) * (1 / sphere);
-      if (e.lights_plane_evenly) largest = inverse_cube_of_cosine(e, {1, 1, 1});
+      if (e.has_uniform_plane) largest = inverse_cube_of_cosine(e, {1, 1, 1});
     } else {
       const EnvironmentMap& map = scene.environments[size_t(e.environment)];
       p.mean_radiance = e.radiance * (float(direction_table(map).integral()) / sphere);

@@ -82,7 +82,7 @@ bool Portal::shows(const Vec3& x, const Vec3& wi) const {
 // all corners holds between them.
 Portal::View Portal::view_within(double margin, const Box& receivers,
                                  const Parallelogram& far) const {
-  constexpr double angle = 1e-5;  // above rounding and the error of "far away" (far_cells.h)
+  constexpr double angle = 1e-5;  // above rounding and the error of "far away" (sky_patches.h)
   constexpr size_t conditions = 6;
   std::array<bool, conditions> always{}, never{};
   always.fill(true);

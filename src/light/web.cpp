@@ -30,29 +30,33 @@ float intensity(const LightWeb& web, const Vec3& w) {
   const Vec3 v{dot(w, axes[0]), dot(w, axes[1]), dot(w, axes[2])};
   const float height = std::atan2(std::sqrt(v.x * v.x + v.y * v.y), v.z);
   constexpr float slack = 1e-5f;
-  if (height < web.heights_rad.front() - slack || height > web.heights_rad.back() + slack) return 0;
+  if (height < web.vertical_angles_rad.front() - slack ||
+      height > web.vertical_angles_rad.back() + slack)
+    return 0;
   float turn = std::atan2(v.y, v.x);
-  if (turn < web.turns_rad.front() - slack) turn += 2 * pi_f;
-  if (turn > web.turns_rad.back() + slack) return 0;
+  if (turn < web.horizontal_angles_rad.front() - slack) turn += 2 * pi_f;
+  if (turn > web.horizontal_angles_rad.back() + slack) return 0;
   float s = 0, t = 0;
-  const size_t i = step_of(web.turns_rad, turn, s), j = step_of(web.heights_rad, height, t);
-  const size_t n = web.heights_rad.size();
+  const size_t i = step_of(web.horizontal_angles_rad, turn, s),
+               j = step_of(web.vertical_angles_rad, height, t);
+  const size_t n = web.vertical_angles_rad.size();
   const float* at = web.intensities.data() + i * n + j;
   return lerp(lerp(at[0], at[1], t), lerp(at[n], at[n + 1], t), s);
 }
 
 double flux(const LightWeb& web) {
-  const size_t n = web.heights_rad.size();
+  const size_t n = web.vertical_angles_rad.size();
   double sum = 0;
   for (size_t j = 0; j + 1 < n; ++j) {
-    const double a = double(web.heights_rad[j]), b = double(web.heights_rad[j + 1]);
+    const double a = double(web.vertical_angles_rad[j]), b = double(web.vertical_angles_rad[j + 1]);
     if (!(b > a)) continue;
     // Integral of sin over [a, b], and of sin times a ramp from 0 to 1 over [a, b].
     const double all = std::cos(a) - std::cos(b);
     const double rising = (std::sin(b) - std::sin(a)) / (b - a) - std::cos(b);
-    for (size_t i = 0; i + 1 < web.turns_rad.size(); ++i) {
+    for (size_t i = 0; i + 1 < web.horizontal_angles_rad.size(); ++i) {
       const float* at = web.intensities.data() + i * n + j;
-      const double turn = double(web.turns_rad[i + 1]) - double(web.turns_rad[i]);
+      const double turn =
+          double(web.horizontal_angles_rad[i + 1]) - double(web.horizontal_angles_rad[i]);
       const double low = (double(at[0]) + double(at[n])) / 2;
       const double high = (double(at[1]) + double(at[n + 1])) / 2;
       sum += turn * (low * all + (high - low) * rising);
@@ -107,8 +111,10 @@ void add_seen(const Vec3& face, size_t n, const float* __restrict x, const float
 TROFFER_MULTIVERSION
 void keep_within(const LightWeb& web, size_t n, float* __restrict height, float* __restrict turn) {
   constexpr float slack = 1e-5f;
-  const float least_turn = web.turns_rad.front() - slack, most_turn = web.turns_rad.back() + slack,
-              least = web.heights_rad.front() - slack, most = web.heights_rad.back() + slack;
+  const float least_turn = web.horizontal_angles_rad.front() - slack,
+              most_turn = web.horizontal_angles_rad.back() + slack,
+              least = web.vertical_angles_rad.front() - slack,
+              most = web.vertical_angles_rad.back() + slack;
   for (size_t i = 0; i < n; ++i) {
     turn[i] += turn[i] < least_turn ? 2 * pi_f : 0.0f;
     const bool is_within = (height[i] >= least) & (height[i] <= most) & (turn[i] <= most_turn);
@@ -190,7 +196,7 @@ void WebLookup::Steps::find(size_t n, const float* x, int32_t* step, float* shar
 }
 
 WebLookup::WebLookup(const LightWeb& web)
-    : web_(web), heights_(web.heights_rad), turns_(web.turns_rad) {}
+    : web_(web), heights_(web.vertical_angles_rad), turns_(web.horizontal_angles_rad) {}
 
 void WebLookup::radiance_many(const std::array<Vec3, 3>& axes, size_t n, const float* x,
                               const float* y, const float* z, WebLanes& lanes, float* out) const {
@@ -210,7 +216,7 @@ void WebLookup::radiance_many(const std::array<Vec3, 3>& axes, size_t n, const f
   keep_within(web_, n, l.height.data(), l.turn.data());
   heights_.find(n, l.height.data(), l.height_step.data(), l.height_share.data());
   turns_.find(n, l.turn.data(), l.turn_step.data(), l.turn_share.data());
-  interpolate(web_.intensities.data(), int32_t(web_.heights_rad.size()), least, n,
+  interpolate(web_.intensities.data(), int32_t(web_.vertical_angles_rad.size()), least, n,
               l.turn_step.data(), l.height_step.data(), l.turn_share.data(), l.height_share.data(),
               l.height.data(), l.area.data(), out);
 }
@@ -220,16 +226,16 @@ WebSamples::WebSamples(const LightWeb& web) {
   // Each cell of the web is divided into parts of at most 3 degrees.
   const auto most = float(rad_from_deg(3.0));
   const auto parts_of = [&](float from, float to) { return int((to - from) / most) + 1; };
-  for (size_t j = 0; j + 1 < web.heights_rad.size(); ++j) {
-    const float h0 = web.heights_rad[j], h1 = web.heights_rad[j + 1];
+  for (size_t j = 0; j + 1 < web.vertical_angles_rad.size(); ++j) {
+    const float h0 = web.vertical_angles_rad[j], h1 = web.vertical_angles_rad[j + 1];
     const int rows = parts_of(h0, h1);
     for (int row = 0; row < rows; ++row) {
       const float a = lerp(h0, h1, float(row) / float(rows)),
                   b = lerp(h0, h1, float(row + 1) / float(rows));
       const float middle = 0.5f * (a + b), zone = std::cos(a) - std::cos(b);
       const float z = std::cos(middle), r = std::sin(middle);
-      for (size_t i = 0; i + 1 < web.turns_rad.size(); ++i) {
-        const float t0 = web.turns_rad[i], step = web.turns_rad[i + 1] - t0;
+      for (size_t i = 0; i + 1 < web.horizontal_angles_rad.size(); ++i) {
+        const float t0 = web.horizontal_angles_rad[i], step = web.horizontal_angles_rad[i + 1] - t0;
         const int columns = parts_of(0, step);
         for (int column = 0; column < columns; ++column) {
           const float turn = t0 + step * (float(column) + 0.5f) / float(columns);

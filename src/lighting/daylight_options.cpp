@@ -13,11 +13,11 @@
 #include "daylight/sky_lights.h"
 #include "import/environment_file.h"
 #include "import/light_radius.h"
-#include "lighting/asked_portals.h"
 #include "lighting/attached_luminaires.h"
 #include "lighting/dimming.h"
 #include "lighting/luminaire_list.h"
 #include "lighting/option_text.h"
+#include "lighting/portal_options.h"
 #include "lighting/weather.h"
 
 namespace troffer {
@@ -231,7 +231,7 @@ void warn_of_unused(Scene& scene, const DaylightOptions& o) {
 
 }  // namespace
 
-const char* const invented_sky =
+const char* const default_sky_warning =
     "the scene has no light: an even sky of 10000 lx lights it (--sky chooses another, --sky none "
     "keeps it dark)";
 
@@ -272,7 +272,7 @@ bool depends_on_up(const DaylightOptions& o) {
 }
 
 void add_daylight(Scene& scene, const DaylightOptions& o) {
-  add_daylight(scene, o, o.up.empty() ? decide_up(scene) : asked_up(parse_up(o.up)));
+  add_daylight(scene, o, o.up.empty() ? decide_up(scene) : requested_up(parse_up(o.up)));
 }
 
 void add_daylight(Scene& scene, const DaylightOptions& o, const UpDecision& up) {
@@ -308,12 +308,12 @@ void add_daylight(Scene& scene, const DaylightOptions& o, const UpDecision& up) 
     add_weather(scene, o, compass);
   } else if ((is_asked && o.sky != "none") || !o.sun.empty() || !o.at.empty()) {
     add_asked_sky(scene, o, compass);
-  } else if (!had_light && o.invents_sky && o.environment.empty() && o.sky != "none" &&
+  } else if (!had_light && o.adds_default_sky && o.environment.empty() && o.sky != "none" &&
              !bounds(scene).is_empty()) {
     SkyRequest even;
     even.ground_reflectance = o.ground;
     add_sky(scene, even, compass);
-    scene.warnings.add(invented_sky);
+    scene.warnings.add(default_sky_warning);
     is_up_used = true;
   }
   if (is_up_used && !up.doubt.empty()) scene.warnings.add(up.doubt);
@@ -324,7 +324,8 @@ void add_daylight(Scene& scene, const DaylightOptions& o, const UpDecision& up) 
 
 void check_light(const Scene& scene, const DaylightOptions& o,
                  const std::vector<std::string>& lights) {
-  if (o.invents_sky || shines(scene) || (o.asks_for_sky() && lights.empty()) || o.sky == "none")
+  if (o.adds_default_sky || shines(scene) || (o.requests_sky() && lights.empty()) ||
+      o.sky == "none")
     return;
   const char* const why = !o.dims.empty()   ? "; --dim leaves no light"
                           : !lights.empty() ? "; --light leaves no light"

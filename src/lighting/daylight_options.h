@@ -20,23 +20,23 @@ struct DaylightOptions {
   std::string weather, date;  // lighting/weather.h
   double light_radius = 0;    // m; 0: point lights stay points
   std::string environment;
-  std::vector<std::string> portals;  // lighting/asked_portals.h
+  std::vector<std::string> portals;  // lighting/portal_options.h
   std::string up;                    // text for parse_up(); empty: decide_up()
   double north_deg = 0, ground = 0.2, environment_rotation_deg = 0;
   double turbidity = 0;  // Linke turbidity; 0: typical value
   // A scene without light gets a uniform sky. False for commands that report figures or verdicts,
   // which must not rest on light that the user did not ask for: check_light() then throws.
-  bool invents_sky = true;
+  bool adds_default_sky = true;
 
   // True if light from outside the scene, or darkness (--sky none), is requested.
-  bool asks_for_sky() const {
+  bool requests_sky() const {
     return !sky.empty() || !sun.empty() || !at.empty() || !weather.empty() || !environment.empty();
   }
 };
 
 // Adds the requested lights to the scene and dims lights. A scene without light gets a uniform sky
-// and a warning, if options.invents_sky is set and darkness is not requested. Throws UsageError for
-// invalid values, InputError for unreadable images.
+// and a warning, if options.adds_default_sky is set and darkness is not requested. Throws
+// UsageError for invalid values, InputError for unreadable images.
 void add_daylight(Scene& scene, const DaylightOptions& options);
 // Same with a given decision about the up direction (options.up is ignored). A doubt about it
 // becomes a warning if the lights depend on it.
@@ -49,10 +49,11 @@ bool depends_on_up(const DaylightOptions& options);
 Vec3 parse_up(const std::string& text);
 
 // Text of the warning about an invented sky.
-extern const char* const invented_sky;
+extern const char* const default_sky_warning;
 
-// Throws InputError, with advice, if nothing in the scene emits light, options.invents_sky is false
-// and darkness is not requested. `lights`: names to which the lights are restricted; may be empty.
+// Throws InputError, with advice, if nothing in the scene emits light, options.adds_default_sky is
+// false and darkness is not requested. `lights`: names to which the lights are restricted; may be
+// empty.
 void check_light(const Scene& scene, const DaylightOptions& options,
                  const std::vector<std::string>& lights);
 

@@ -13,7 +13,7 @@
 #include "gather/cells_indirect.h"
 #include "kj92/bintree_direct.h"
 #include "kj92/radiosity_indirect.h"
-#include "light/far_cells.h"
+#include "light/sky_patches.h"
 #include "methods/path.h"
 #include "methods/path_forecast.h"
 #include "methods/paths_indirect.h"
@@ -26,13 +26,13 @@ namespace {
 
 // Allowed error of direct light beyond the first surface: at cells and at what gloss shows. At
 // least 0.1, because many cells average out and gloss carries only a part of the light.
-double error_beyond(const MethodInput& in) {
+double error_beyond_first(const MethodInput& in) {
   constexpr double least_error = 0.1;
   return std::max(in.settings.error, least_error);
 }
-CertifiedSettings settings_beyond(const MethodInput& in) {
+CertifiedSettings settings_beyond_first(const MethodInput& in) {
   constexpr int few_points = 8;
-  CertifiedSettings s = certified_settings(error_beyond(in), in.scene.scene.lights.size());
+  CertifiedSettings s = certified_settings(error_beyond_first(in), in.scene.scene.lights.size());
   s.gloss_samples = few_points;
   return s;
 }
@@ -55,7 +55,7 @@ CertifiedSettings settings_of_first(const MethodInput& in) {
 // keep certificates: they share cells, so all of them would have the same noise.
 CertifiedSettings drawn_beyond(const MethodInput& in, double coarse) {
   constexpr int draws = 16, few_draws = 8;  // powers of two stratify best
-  CertifiedSettings s = settings_beyond(in);
+  CertifiedSettings s = settings_beyond_first(in);
   if (in.cells->view != nullptr) s.draws = in.settings.error >= coarse ? few_draws : draws;
   return s;
 }
@@ -63,7 +63,7 @@ CertifiedSettings drawn_beyond(const MethodInput& in, double coarse) {
 // gloss shows along any viewing ray.
 CertifiedSettings settings_of_further(const MethodInput& in) {
   CertifiedSettings s = drawn_beyond(in, 0.1);
-  s.matte_times = 2;
+  s.matte_draw_factor = 2;
   return s;
 }
 // Settings at cells. A cell averages eight or more hits, so few samples suffice from a smaller
@@ -106,13 +106,14 @@ GatheredCells make_gathered_cells(const MethodInput& in, const DirectLight& dire
   GatheredCells made;
   std::unique_ptr<Cells> cells =
       make_cells(in.scene, direct, in.cells->pilot,
-                 {in.settings.threads, in.cells->seed, error_beyond(in), in.settings.error,
+                 {in.settings.threads, in.cells->seed, error_beyond_first(in), in.settings.error,
                   most_cells, in.cells->group, in.cells->points, in.cells->enough},
                  in.cells->store, part(0, 0.4), in.cells->stop, in.cells->counters);
   if (!cells) return made;
   in.cells->statistics = cells->statistics();
   if (in.cells->points.most_rays > 0)
-    cells->look_closely_where_worth_it(in.cells->pilot.places, in.cells->seed, in.cells->counters);
+    cells->resolve_narrow_where_worth_it(in.cells->pilot.places, in.cells->seed,
+                                         in.cells->counters);
   made.cells = std::move(cells);
   if (in.cells->view != nullptr) {
     const GatherOptions options{error_of_gather(in.settings.error),
@@ -148,7 +149,7 @@ std::unique_ptr<Integrator> make_quick(const MethodInput& in,
                                        const std::shared_ptr<const Cells>& cells,
                                        const std::shared_ptr<const GatherRecords>& records) {
   constexpr int few_draws = 4;  // a power of two: stratified best
-  CertifiedSettings settings = settings_beyond(in);
+  CertifiedSettings settings = settings_beyond_first(in);
   settings.draws = few_draws;
   std::unique_ptr<DirectLight> direct =
       std::make_unique<CertifiedDirect>(in.scene, occluders, settings);
@@ -162,7 +163,7 @@ std::unique_ptr<Integrator> make_quick(const MethodInput& in,
 std::shared_ptr<const Occluders> occluders_for(const MethodInput& in) {
   const std::vector<Light>& lights = in.scene.scene.lights;
   const bool is_asked = std::any_of(lights.begin(), lights.end(), [](const Light& light) {
-    return has_surface(light.kind) || has_far_cells(light.kind);
+    return has_surface(light.kind) || has_sky_patches(light.kind);
   });
   if (!is_asked) return std::make_shared<const Occluders>(Scene());
   return std::make_shared<const Occluders>(in.scene.scene, &in.scene.glass);
@@ -320,7 +321,7 @@ const std::array<MethodRow, 4> MethodTable::methods{{
         .widest_tile = 8,  // keeps clusters of hits small in space
         .most_rays_per_tile = most_certified_rays_of_tile,
         .has_noise_of_batch = true,
-        .wants_typical = true,
+        .uses_typical_luminance = true,
         .refinement = 4,
         .measures_to_error = true,
         .measuring_samples_per_direct = 32,

@@ -92,7 +92,7 @@ struct CellInput {
   // Without a view, limit of the number of cells: beyond it make_integrator() returns null.
   double most_cells = std::numeric_limits<double>::infinity();
   // Gathering at measuring points. If set, rays also resolve sub-cell features: they do not read
-  // cells there, but sample lights and go on (CellMap::look_closely).
+  // cells there, but sample lights and go on (CellMap::resolve_narrow).
   GatheringPoints points{};
   // Once set, preparation ends as soon as it can (CellBuilderOptions::enough). Null: never.
   const StopFlag* enough = nullptr;
@@ -131,7 +131,7 @@ struct MethodRow {
   // then has the same noise only if it is cut into the same batches.
   bool has_noise_of_batch = false;
   // True if the errors of dark pixels are judged against the usual luminance of the picture.
-  bool wants_typical = false;
+  bool uses_typical_luminance = false;
   // True if the pixels of a crop must have the values that they have in the whole picture.
   bool is_same_in_crops = true;
   int refinement = 1;  // default limit of viewing rays per pixel, in --spp; 1: none are added

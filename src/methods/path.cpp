@@ -233,7 +233,7 @@ bool PathIntegrator::step_from(Walk& walk, const Vertex& v, const Bsdf& bsdf,
   if (!step(walk, v, bsdf, lobe, direction)) return false;
   if (!options_.images || walk.panes != panes) return true;
   walk.last_place = is_lambertian(bsdf, nullptr)
-                        ? MirrorImages::from_matte
+                        ? MirrorImages::note_from_matte
                         : options_.images->note_beyond(
                               v, came_from, walk.scatterings != scatterings, walk.ray.direction);
   return true;

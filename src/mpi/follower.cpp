@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "mpi/journal.h"
+#include "mpi/job_log.h"
 #include "mpi/tree.h"
 
 namespace troffer {
@@ -16,12 +16,13 @@ constexpr auto ask_interval = 3s;  // for results that have not arrived
 
 }  // namespace
 
-Follower::Follower(Post& post, int usual_threads, double patience, std::function<void()> forsaken)
+Follower::Follower(Post& post, int default_threads, double patience,
+                   std::function<void()> leader_is_silent)
     : rank_(post.rank()),
       size_(post.size()),
-      usual_threads_(usual_threads),
+      usual_threads_(default_threads),
       patience_(patience),
-      forsaken_(std::move(forsaken)),
+      forsaken_(std::move(leader_is_silent)),
       transport_(
           post, [this](Message&& l) { receive(std::move(l)); }, [this] { tick(); }) {}
 

@@ -24,7 +24,8 @@ class Follower final : public ProcessGroup {
  public:
   // `post` must outlive the follower. forsaken: called if rank 0 was silent for `patience` seconds;
   // it must not return. Rank 0 sends a sign of life every ten seconds.
-  Follower(Post& post, int usual_threads, double patience, std::function<void()> forsaken);
+  Follower(Post& post, int default_threads, double patience,
+           std::function<void()> leader_is_silent);
   ~Follower() override;  // waits until rank 0 ends the run
 
   int rank() const override { return rank_; }
@@ -34,7 +35,7 @@ class Follower final : public ProcessGroup {
   const StopFlag& stop_flag() const override { return stop_; }
   void watch(const StopFlag& asked) override { asked_ = &asked; }
   void leave(const std::string& why) override;
-  int usual_threads() const override { return usual_threads_; }
+  int default_threads() const override { return usual_threads_; }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -23,9 +23,9 @@ constexpr auto time_for_byes = 3s;  // for processes that may have died
 
 }  // namespace
 
-Leader::Leader(Post& post, int usual_threads, Warn warn, std::unique_ptr<Journal> journal)
+Leader::Leader(Post& post, int default_threads, Warn warn, std::unique_ptr<JobLog> journal)
     : size_(post.size()),
-      usual_threads_(usual_threads),
+      usual_threads_(default_threads),
       warn_(std::move(warn)),
       journal_(std::move(journal)),
       others_(size_t(post.size())),

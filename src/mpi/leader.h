@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "base/process_group.h"
-#include "mpi/journal.h"
+#include "mpi/job_log.h"
 #include "mpi/message_transport.h"
 #include "mpi/messages.h"
 
@@ -32,7 +32,7 @@ class Leader final : public ProcessGroup {
 
   // `post` must outlive the leader. warn: called when a process leaves, once there is work for all.
   // journal: may be null.
-  Leader(Post& post, int usual_threads, Warn warn, std::unique_ptr<Journal> journal = nullptr);
+  Leader(Post& post, int default_threads, Warn warn, std::unique_ptr<JobLog> journal = nullptr);
   ~Leader() override;  // tells all processes that the run is over
 
   int rank() const override { return 0; }
@@ -42,7 +42,7 @@ class Leader final : public ProcessGroup {
   const StopFlag& stop_flag() const override { return stop_; }
   void watch(const StopFlag& asked) override { asked_ = &asked; }
   void leave(const std::string&) override {}
-  int usual_threads() const override { return usual_threads_; }
+  int default_threads() const override { return usual_threads_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -99,7 +99,7 @@ class Leader final : public ProcessGroup {
 
   const int size_, usual_threads_;
   Warn warn_;
-  std::unique_ptr<Journal> journal_;
+  std::unique_ptr<JobLog> journal_;
   double last_end_ = 0;  // end of the last job, in thread_seconds() of the caller
   StopFlag stop_ = false;
   std::atomic<const StopFlag*> asked_ = nullptr;

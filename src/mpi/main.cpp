@@ -11,7 +11,7 @@
 #include "app/commands.h"
 #include "base/error.h"
 #include "mpi/follower.h"
-#include "mpi/journal.h"
+#include "mpi/job_log.h"
 #include "mpi/leader.h"
 #include "mpi/mpi_post.h"
 
@@ -19,7 +19,7 @@ namespace {
 
 constexpr double patience = 120;  // seconds without a message from rank 0
 
-[[noreturn]] void is_forsaken() {
+[[noreturn]] void exit_leader_is_silent() {
   fmt::print(stderr, "error: nothing has been heard of process 0 for {} s\n", patience);
   _exit(troffer::exit_bad_input);
 }
@@ -39,7 +39,7 @@ int run_alone(int argc, char** argv) {
 
 // Returns a thread count with which all processes on this machine share its cores. Assumes that
 // each process is bound to the same number of cores, either all disjoint or all the same.
-int usual_threads() {
+int default_threads() {
   cpu_set_t own;
   CPU_ZERO(&own);
   if (sched_getaffinity(0, sizeof(own), &own) != 0) return 1;
@@ -51,15 +51,15 @@ int usual_threads() {
 }
 
 int run_together(troffer::MpiPost& post, int argc, char** argv) {
-  const int threads = usual_threads();
+  const int threads = default_threads();
   std::unique_ptr<troffer::ProcessGroup> group;
   if (post.rank() == 0) {
     const char* file = std::getenv("TROFFER_MPI_JOURNAL");
     const auto warn = [](const std::string& what) { fmt::print(stderr, "warning: {}\n", what); };
     group = std::make_unique<troffer::Leader>(
-        post, threads, warn, file != nullptr ? std::make_unique<troffer::Journal>(file) : nullptr);
+        post, threads, warn, file != nullptr ? std::make_unique<troffer::JobLog>(file) : nullptr);
   } else {
-    group = std::make_unique<troffer::Follower>(post, threads, patience, is_forsaken);
+    group = std::make_unique<troffer::Follower>(post, threads, patience, exit_leader_is_silent);
   }
   const int status = troffer::run(argc, argv, group.get());
   group.reset();

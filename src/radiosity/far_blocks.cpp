@@ -62,7 +62,7 @@ void FarBlocks::start(size_t block) {
   add(f);
 }
 
-bool FarBlocks::start_weak(size_t block) {
+bool FarBlocks::start_if_weak(size_t block) {
   // error factor of the cells' irradiance beyond one cell radius
   constexpr float cells_may_err = 2;
   const ReceiverBlock& b = row_->receivers.blocks[block];

@@ -14,7 +14,7 @@ class FarBlocks {
   void start(size_t block);
   // Starts a block near the patch. Returns false and does nothing if the block is so near, or so
   // bright, that the error of the cells would show.
-  bool start_weak(size_t block);
+  bool start_if_weak(size_t block);
   // Traces the rays of all started blocks and writes the result. first_block: the chunk's first
   // block.
   void finish(size_t first_block, RowChunk& out);

@@ -26,7 +26,7 @@ uint64_t make_chunk(const RowContext& row, size_t first_block, RowScratch& s, Ro
     const ReceiverBlock& block = blocks[first_block + k];
     if (is_out_of_sight(row.shooter.bounds, block)) continue;
     if (is_near(row.shooter, block, cell_radii)) {
-      if (s.far.start_weak(first_block + k)) continue;
+      if (s.far.start_if_weak(first_block + k)) continue;
       s.near.find(first_block + k, k, s.chunk);
     } else {
       s.far.start(first_block + k);

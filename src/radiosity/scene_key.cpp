@@ -92,7 +92,8 @@ void add_texture(Hasher& h, const Texture& t) {
 }
 
 void add_web(Hasher& h, const LightWeb& web) {
-  for (const auto* values : {&web.heights_rad, &web.turns_rad, &web.intensities}) {
+  for (const auto* values :
+       {&web.vertical_angles_rad, &web.horizontal_angles_rad, &web.intensities}) {
     h.add(values->size());
     for (const float v : *values) h.add(v);
   }

@@ -60,7 +60,7 @@ double relative_bias(const std::vector<Measurement>& points, const std::vector<M
   return std::sqrt((squares - count) / weights);
 }
 
-std::vector<size_t> few_of(size_t points) {
+std::vector<size_t> audited_points(size_t points) {
   constexpr size_t most = 32;
   const size_t few = std::min(points, most);
   std::vector<size_t> which;
@@ -76,7 +76,7 @@ std::optional<AuditFinding> audit(const Integrator& paths,
                                   const std::vector<PointLight>& by_cells, const PointPlan& plan,
                                   const PointsRun& run) {
   AuditFinding f;
-  f.points = few_of(places.size());
+  f.points = audited_points(places.size());
   std::vector<MeasuringPlace> at;
   std::vector<Measurement> of_cells;
   for (const size_t i : f.points) {
@@ -95,7 +95,7 @@ std::optional<AuditFinding> audit(const Integrator& paths,
       few.values[k].all = by_cells[f.points[k]].all;
     }
     f.bias = relative_bias(of_cells, f.by_paths);
-    f.is_slight = is_last && !is_doubted;
+    f.needed_second_look = is_last && !is_doubted;
     if (!is_last) f.is_worth_paths = are_worth_paths(by_cells, few.values, plan.error);
     is_doubted = f.bias > 0;
     // Points that paths will replace anyway need no second look.
@@ -114,12 +114,12 @@ PointPlan plan_by_paths(PointPlan plan) {
   return plan;
 }
 
-void tell_bias(double bias, std::vector<PointLight>& by_cells) {
+void add_bias_to_errors(double bias, std::vector<PointLight>& by_cells) {
   for (PointLight& v : by_cells)
     v.all.standard_error = std::hypot(v.all.standard_error, bias * v.indirect.illuminance_lx);
 }
 
-void take_better(const Measurement& by_paths, double bias, PointLight& v) {
+void replace_by_paths(const Measurement& by_paths, double bias, PointLight& v) {
   const double more = bias * v.indirect.illuminance_lx;
   if (by_paths.standard_error >= std::hypot(v.indirect.standard_error, more)) {
     v.all.standard_error = std::hypot(v.all.standard_error, more);
@@ -130,7 +130,7 @@ void take_better(const Measurement& by_paths, double bias, PointLight& v) {
            std::hypot(v.direct.standard_error, by_paths.standard_error)};
 }
 
-void take_both(const AuditFinding& finding, std::vector<PointLight>& by_cells) {
+void combine_measurements(const AuditFinding& finding, std::vector<PointLight>& by_cells) {
   constexpr size_t several = 8;
   if (finding.points.size() < several) return;
   double of_cells = 0, of_paths = 0;  // variances relative to all light

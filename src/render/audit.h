@@ -23,11 +23,11 @@ double relative_bias(const std::vector<Measurement>& points, const std::vector<M
 
 // Returns the indices of at most 32 points, one at random from each of equally long parts of the
 // list. Regular steps could meet the same few columns in every row of a grid.
-std::vector<size_t> few_of(size_t points);
+std::vector<size_t> audited_points(size_t points);
 
 struct AuditFinding {
-  double bias = 0;         // relative_bias() of indirect light
-  bool is_slight = false;  // only the second look, with more paths, found the bias
+  double bias = 0;                  // relative_bias() of indirect light
+  bool needed_second_look = false;  // only the second look, with more paths, found the bias
   bool is_worth_paths =
       false;  // the error of points exceeds the asked one, and that of paths would be much less
   // Indices of the audited points, and their indirect light by paths.
@@ -48,15 +48,15 @@ std::optional<AuditFinding> audit(const Integrator& paths,
 PointPlan plan_by_paths(PointPlan plan);
 
 // Adds a slight bias to the standard errors of points, which keep their values.
-void tell_bias(double bias, std::vector<PointLight>& by_cells);
+void add_bias_to_errors(double bias, std::vector<PointLight>& by_cells);
 
 // Replaces indirect light by cells, with this relative bias, by that of paths. If the paths'
 // standard error is larger, keeps the value and adds the bias to its error instead.
-void take_better(const Measurement& by_paths, double bias, PointLight& by_cells);
+void replace_by_paths(const Measurement& by_paths, double bias, PointLight& by_cells);
 
 // Combines both measurements of audited points if no bias was found: the mean weighted by inverse
 // variance. All points share one weight, and at least eight are needed. Individual weights would
 // correlate with the values and favour sums that are small by chance.
-void take_both(const AuditFinding& finding, std::vector<PointLight>& by_cells);
+void combine_measurements(const AuditFinding& finding, std::vector<PointLight>& by_cells);
 
 }  // namespace troffer

@@ -1,7 +1,7 @@
 #include "render/edge_map.h"
 
 #include "render/pixel_corners.h"
-#include "render/thin_things.h"
+#include "render/sub_pixel_features.h"
 
 namespace troffer {
 
@@ -13,9 +13,9 @@ EdgeMap::EdgeMap(const PreparedScene& scene, const ViewingCamera& camera, const 
     for (int x = region.x0; x < region.x1; ++x)
       if (corners.differ(x, y)) edges_[index(x, y)] = surface_edge;
   const std::vector<uint8_t> has_thing =
-      pixels_with_thin_things(scene, camera, region, corners, edges_, threads);
+      pixels_with_sub_pixel_features(scene, camera, region, corners, edges_, threads);
   for (size_t i = 0; i < edges_.size(); ++i)
-    if (has_thing[i] != 0) edges_[i] |= thin_thing;
+    if (has_thing[i] != 0) edges_[i] |= sub_pixel_feature;
   for (int y = region.y0; y < region.y1; ++y)
     for (int x = region.x0; x < region.x1; ++x)
       if (outlines.has_outline(x, y))

@@ -22,10 +22,12 @@ class EdgeMap {
 
   // True if the corners of the pixel see different surfaces, or if it shows a sub-pixel feature.
   bool has_surface_edge(int x, int y) const {
-    return (edges_[index(x, y)] & (surface_edge | thin_thing)) != 0;
+    return (edges_[index(x, y)] & (surface_edge | sub_pixel_feature)) != 0;
   }
   // True if the pixel shows a sub-pixel feature, whose coverage is unknown.
-  bool has_thin_thing(int x, int y) const { return (edges_[index(x, y)] & thin_thing) != 0; }
+  bool has_sub_pixel_feature(int x, int y) const {
+    return (edges_[index(x, y)] & sub_pixel_feature) != 0;
+  }
   // True if a light outline passes through the pixel.
   bool has_light_edge(int x, int y) const {
     return (edges_[index(x, y)] & (light_edge | known_light_edge)) != 0;
@@ -36,7 +38,8 @@ class EdgeMap {
   }
 
  private:
-  static constexpr uint8_t surface_edge = 1, light_edge = 2, thin_thing = 4, known_light_edge = 8;
+  static constexpr uint8_t surface_edge = 1, light_edge = 2, sub_pixel_feature = 4,
+                           known_light_edge = 8;
   size_t index(int x, int y) const {
     return size_t(y - region_.y0) * size_t(region_.width()) + size_t(x - region_.x0);
   }

@@ -157,7 +157,7 @@ Film::Light Film::light_of(size_t i) const {
     const Vec3d sum = l.direct + l.indirect;
     return std::min({sum.x, sum.y, sum.z}) < 0;
   };
-  const Light as_it_came{plain.direct - as_vec(known_[i].evened) * each, plain.indirect};
+  const Light as_it_came{plain.direct - as_vec(known_[i].edge_correction) * each, plain.indirect};
   if (known_[i].surrogates.count == 0) return is_less(plain) ? as_it_came : plain;
   const auto &s = known_[i].samples, &g = known_[i].surrogates;
   const double each_surrogate = 1.0 / g.count,
@@ -244,7 +244,7 @@ bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) 
   if (!known_.empty()) {
     Known& k = known_[at];
     k.samples.add(batch.known[i]);
-    if (!batch.evened.empty()) k.evened += batch.evened[i];
+    if (!batch.edge_correction.empty()) k.edge_correction += batch.edge_correction[i];
     const double rest =
         y_sample - double(luminance(batch.known[i].direct + batch.known[i].indirect));
     k.add_rest(float(rest), p.samples);
@@ -255,9 +255,9 @@ bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) 
   }
   if (!batch.shared_error.empty()) p.shared_error += double(batch.shared_error[i]);
   if (!batch.drawn_error.empty()) p.drawn_error += double(batch.drawn_error[i]);
-  if (!batch.indirect_with_error.empty()) {
+  if (!batch.luminance_with_error.empty()) {
     p.has_whole_error = true;
-    const double untold = double(luminance(indirect)) - double(batch.indirect_with_error[i]);
+    const double untold = double(luminance(indirect)) - double(batch.luminance_with_error[i]);
     p.untold += untold;
     p.without_error_squared += untold * untold;
   }

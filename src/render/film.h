@@ -130,7 +130,7 @@ class Film {
   // Known radiance of one pixel.
   struct Known {
     KnownSums samples, surrogates;
-    Rgb evened;                           // RadianceBatch::evened, over samples
+    Rgb edge_correction;                  // RadianceBatch::evened, over samples
     float rest = 0, squares_of_rest = 0;  // luminance of samples minus known radiance
     // The same by blocks of block_size samples: the unfinished block, the sum of whole blocks, and
     // the sum of their squares.

@@ -285,7 +285,7 @@ void LightOutlines::add_pieces(const Shapes& shapes, const Pixel2& pixel, Cover&
   }
 }
 
-Rgb LightOutlines::evened(int x, int y, const Vec2& place, Rgb seen) const {
+Rgb LightOutlines::edge_correction(int x, int y, const Vec2& place, Rgb seen) const {
   const uint32_t pixel = pixels_[index(x, y)];
   if (pixel < first_known) return {};
   const Cover& cover = covers_[pixel - first_known];

@@ -45,7 +45,7 @@ class LightOutlines {
   // lamps over the pixel, minus their light at this place. Its mean over the pixel is 0, and it is
   // 0 where coverage is not known. `seen` is the emission that the ray has met. It decides for rays
   // within rounding error of an outline.
-  Rgb evened(int x, int y, const Vec2& place, Rgb seen) const;
+  Rgb edge_correction(int x, int y, const Vec2& place, Rgb seen) const;
 
  private:
   static constexpr uint32_t nothing = 0, unknown = 1, first_known = 2;

@@ -172,11 +172,11 @@ class PointsMeasuring {
       return;
     }
     if (finding->bias == 0 && !finding->is_worth_paths) {
-      take_both(*finding, found.values);
+      combine_measurements(*finding, found.values);
       return;
     }
-    if (finding->is_slight && !finding->is_worth_paths) {
-      tell_bias(finding->bias, found.values);
+    if (finding->needed_second_look && !finding->is_worth_paths) {
+      add_bias_to_errors(finding->bias, found.values);
       return;
     }
     // New random numbers: those of the audit led to this decision.
@@ -184,7 +184,7 @@ class PointsMeasuring {
     found.is_cut_short = !all.is_complete();
     if (!all.is_complete()) return;
     for (size_t i = 0; i < found.values.size(); ++i)
-      take_better(all.values[i].indirect, finding->bias, found.values[i]);
+      replace_by_paths(all.values[i].indirect, finding->bias, found.values[i]);
   }
 
   const PreparedScene& scene_;

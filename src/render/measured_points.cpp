@@ -139,8 +139,8 @@ PointLight measure_point(const Integrator& integrator, uint64_t stream, const Po
   const double more = std::sqrt(std::max(sqr(least) - sqr(direct.standard_error()), 0.0));
   PointLight light{measurement_of(all, lx, more), measurement_of(direct, lx, more),
                    measurement_of(indirect, lx)};
-  light.seldom_error = seldom.standard_error() * lx;
-  light.often_error = often.standard_error() * lx;
+  light.direct_part_error = seldom.standard_error() * lx;
+  light.other_part_error = often.standard_error() * lx;
   light.least_error = least * lx;
   light.kurtosis = indirect.kurtosis();
   light.samples = plan.samples;
@@ -232,7 +232,7 @@ PointValues measure_points(const Integrator& integrator, const std::vector<Measu
       std::all_of(own.begin(), own.end(), [](const PointPlan& p) { return !(p.error > 0); });
   const double after_first = are_all ? 1 : share_of_first;
   measuring.measure(which, first, 0, 0, after_first);
-  tell_rare_light(found.values, which);
+  raise_errors_for_rare_light(found.values, which);
   which.clear();
   const std::vector<PointPlan> enough = enough_for(found.values, own, run.spare_samples);
   for (size_t i = 0; i < points; ++i) {
@@ -246,7 +246,7 @@ PointValues measure_points(const Integrator& integrator, const std::vector<Measu
   }
   if (which.empty() && after_first < 1 && run.progress) run.progress(1);
   measuring.measure(which, more, 1, after_first, 1);
-  tell_rare_light(found.values, which);
+  raise_errors_for_rare_light(found.values, which);
   return found;
 }
 

@@ -63,8 +63,8 @@ PlannedPoint planned(const PointLight& found, const PointPlan& plan, double mean
   p.seldom.samples = double(plan.samples) / plan.samples_per_direct;
   for (Part* part : {&p.often, &p.seldom}) part->most_times = std::max(plan.most_times, 1.0);
   if (plan.samples_per_direct > 1) {
-    p.often.error = found.often_error / lx;
-    p.seldom.error = found.seldom_error / lx;
+    p.often.error = found.other_part_error / lx;
+    p.seldom.error = found.direct_part_error / lx;
     p.seldom.least = found.least_error / lx;
   } else {
     p.often.error = found.all.standard_error / lx;

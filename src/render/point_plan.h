@@ -15,7 +15,7 @@ struct PointLight {
   Measurement all, direct, indirect;
   // Standard errors, lx. seldom: light that only every samples_per_direct-th sample includes, which
   // is direct light and its mirror images. often: all other light.
-  double seldom_error = 0, often_error = 0;
+  double direct_part_error = 0, other_part_error = 0;
   // least error of `direct` with sampled points on sources, lx; falls with the sample count
   double least_error = 0;
   double shared_error =

@@ -48,7 +48,7 @@ std::optional<PointsForecast> forecast_points(const Integrator& paths,
                                               const std::vector<MeasuringPlace>& places,
                                               const PointPlan& plan, const PointsRun& run) {
   std::vector<MeasuringPlace> at;
-  for (const size_t i : few_of(places.size())) at.push_back(places[i]);
+  for (const size_t i : audited_points(places.size())) at.push_back(places[i]);
   PointPlan look = plan;
   look.samples = std::min(plan.samples, samples_looked_at);
   look.samples_per_direct =

@@ -45,7 +45,8 @@ Usual usual_of(const std::vector<PointLight>& points) {
 // The variance estimated from n sets has a squared relative error of (kurtosis - 1) / n; the part
 // that normal sets have is left out. The list's variance differs from the point's by `variety`. The
 // result is the mean of both, weighted by the inverse of these (empirical Bayes).
-void tell_rare_light(std::vector<PointLight>& points, const std::vector<size_t>& which) {
+void raise_errors_for_rare_light(std::vector<PointLight>& points,
+                                 const std::vector<size_t>& which) {
   const Usual usual = usual_of(points);
   const double off = std::max(usual.kurtosis - normal_kurtosis, 0.0) / most_sets;
   const double weight = off / (off + variety);
@@ -56,7 +57,7 @@ void tell_rare_light(std::vector<PointLight>& points, const std::vector<size_t>&
     const double of_list =
         std::min(usual.variance, usual.relative_variance * sqr(p.all.illuminance_lx));
     const double more = weight * std::max(of_list - own, 0.0) / p.samples;
-    for (double* e : {&p.all.standard_error, &p.indirect.standard_error, &p.often_error})
+    for (double* e : {&p.all.standard_error, &p.indirect.standard_error, &p.other_part_error})
       *e = std::sqrt(sqr(*e) + more);
   }
 }

@@ -20,6 +20,6 @@ namespace troffer {
 // with normally distributed sets keep their errors.
 // Errors of Sobol sets fall faster than their size grows, so points with few samples tend to raise
 // others too much.
-void tell_rare_light(std::vector<PointLight>& points, const std::vector<size_t>& which);
+void raise_errors_for_rare_light(std::vector<PointLight>& points, const std::vector<size_t>& which);
 
 }  // namespace troffer

@@ -109,7 +109,7 @@ struct Surroundings {
   double slope_variance = 0;
   bool has_contrast = false;  // between neighbours on opposite sides
   // A neighbour's rays met different surfaces although its corners show no edge.
-  bool has_thin_things = false;
+  bool has_sub_pixel_features = false;
 };
 
 bool differ(const RefinementView& v, int ax, int ay, int bx, int by,
@@ -221,8 +221,8 @@ Surroundings look_around(const RefinementView& v, int x, int y, bool are_compara
       slope.add(dx, dy, e.mean);
       s.mean += v.looks.at(x + dx, y + dy).estimate.luminance;
       varying.add(e);
-      s.has_thin_things |= v.records.has_edge[v.records.index(x + dx, y + dy)] != 0 &&
-                           !v.edges.has_surface_edge(x + dx, y + dy);
+      s.has_sub_pixel_features |= v.records.has_edge[v.records.index(x + dx, y + dy)] != 0 &&
+                                  !v.edges.has_surface_edge(x + dx, y + dy);
       ++count;
       const bool is_first_of_pair = dx + dy == -1;  // the left or the upper one
       if (is_first_of_pair && is_inside(w, x - dx, y - dy) && counts(x - dx, y - dy))
@@ -292,16 +292,16 @@ double variance_along_edge(const RefinementView& v, int x, int y, const Of& of) 
 
 // Returns the variance of a pixel with a sub-pixel feature of unknown coverage p and contrast c. It
 // is the mean of p (1 - p) c² over all p and all c up to the luminance around.
-double variance_of_thin_thing(double mean) {
+double variance_of_sub_pixel_feature(double mean) {
   return sqr(mean) / 18;
 }
 
-// Exponent p of AllowedOfBright for edges, where most further rays go.
+// Exponent p of BrightPixelError for edges, where most further rays go.
 constexpr double of_usual_of_further = 0.6;
 
 // Returns the allowed error of a pixel whose surroundings have this mean luminance.
 double allowed_error(double mean, double typical, const RefinementOptions& options,
-                     const AllowedOfBright& of_bright) {
+                     const BrightPixelError& of_bright) {
   return options.is_everywhere
              ? troffer::allowed_error(double(options.error), mean, typical, of_bright)
              : double(options.error) * std::max(mean, typical);
@@ -311,21 +311,21 @@ double allowed_error(double mean, double typical, const RefinementOptions& optio
 
 int surrogates_wanted(const RefinementView& v, int x, int y, const RefinementOptions& options) {
   // Surrogate rays are so cheap that bright pixels may get the full number by Neyman's rule.
-  constexpr double most_times_less = 100;
+  constexpr double largest_reduction = 100;
   const auto of = [&](int px, int py) { return known_of(v.looks.at(px, py).known); };
   const bool is_light_known = has_known_light(v, x, y);
   const Surroundings s = look_around(v, x, y, !is_light_known, options, of);
   const bool has_edge = v.edges.has_surface_edge(x, y), has_light = v.edges.has_light_edge(x, y);
   const double allowed =
-      allowed_error(s.mean, v.typical, options, {most_times_less, of_usual_of_further});
+      allowed_error(s.mean, v.typical, options, {largest_reduction, of_usual_of_further});
   const double clutter = variance_amid_clutter(v, x, y, s.slope_variance, sqr(allowed), of);
-  if (!has_edge && !has_light && !s.has_contrast && !s.has_thin_things && clutter <= 0 &&
+  if (!has_edge && !has_light && !s.has_contrast && !s.has_sub_pixel_features && clutter <= 0 &&
       s.apart.variance <= sqr(allowed))
     return 0;
   const bool is_divided = has_edge || has_light;
-  const double variance =
-      std::max({s.largest.variance, s.apart.variance, is_divided ? sqr(s.high - s.low) / 4 : 0.0,
-                clutter, v.edges.has_thin_thing(x, y) ? variance_of_thin_thing(s.mean) : 0.0});
+  const double variance = std::max(
+      {s.largest.variance, s.apart.variance, is_divided ? sqr(s.high - s.low) / 4 : 0.0, clutter,
+       v.edges.has_sub_pixel_feature(x, y) ? variance_of_sub_pixel_feature(s.mean) : 0.0});
   // Stratified samples of a pixel with an edge err by n^-3/4. The minimum applies since the
   // neighbours may not have seen the lamp.
   const double least = is_light_known ? 64 : has_light ? 256 : 0;
@@ -348,7 +348,7 @@ WantedSamples samples_wanted(const RefinementView& v, int x, int y, bool has_sur
   const Surroundings s =
       look_around(v, x, y, has_surrogates || !has_known_light(v, x, y), options, of);
   const bool has_edge = v.edges.has_surface_edge(x, y);
-  const bool is_uneven = has_edge || s.has_contrast || s.has_thin_things;
+  const bool is_uneven = has_edge || s.has_contrast || s.has_sub_pixel_features;
   if (!is_uneven && !options.is_everywhere) return {first, 1};
   Varying neighbour = is_uneven ? s.largest : s.usual;
   if (has_surrogates && s.apart.variance > neighbour.variance) neighbour = s.apart;
@@ -356,18 +356,20 @@ WantedSamples samples_wanted(const RefinementView& v, int x, int y, bool has_sur
   if (options.is_noise) variance = s.mean_variance;
   // Two surfaces within the pixel may differ as much as the darkest and the brightest neighbour.
   if (has_edge && !options.is_noise)
-    variance = std::max({variance, sqr(s.high - s.low) / 4, variance_along_edge(v, x, y, of),
-                         v.edges.has_thin_thing(x, y) ? variance_of_thin_thing(s.mean) : 0.0});
+    variance = std::max(
+        {variance, sqr(s.high - s.low) / 4, variance_along_edge(v, x, y, of),
+         v.edges.has_sub_pixel_feature(x, y) ? variance_of_sub_pixel_feature(s.mean) : 0.0});
   // Pixels far brighter than usual, such as edges of sunlight, are few but dominate the error of
   // the picture.
-  constexpr double most_times_less = 16;
-  const double allowed = allowed_error(
-      s.mean, v.typical, options,
-      options.is_noise ? AllowedOfBright{} : AllowedOfBright{most_times_less, of_usual_of_further});
+  constexpr double largest_reduction = 16;
+  const double allowed =
+      allowed_error(s.mean, v.typical, options,
+                    options.is_noise ? BrightPixelError{}
+                                     : BrightPixelError{largest_reduction, of_usual_of_further});
   // Stratification does not help with sub-pixel features.
   SampleSpread spread;
   spread.chance = options.is_noise ? variance : std::min(variance, neighbour.independent);
-  (s.has_thin_things ? spread.thin : spread.placed) = variance - spread.chance;
+  (s.has_sub_pixel_features ? spread.thin : spread.placed) = variance - spread.chance;
   if (!options.is_noise)
     spread.clutter = variance_amid_clutter(v, x, y, s.slope_variance, sqr(allowed), of);
   const SampleNeed need =

@@ -243,7 +243,7 @@ void Picture::render(const Preparation* preparation, RenderResult& result) {
   if (!integrator) return;
   statistics.is_by_paths = integrator->sampling().is_by_noise();
   Rendering rendering(scene_, viewing_, *integrator, options_, plan_, of_tiles, stop_);
-  rendering.expect_gaps(seconds_per_gap_);
+  rendering.set_seconds_per_gap(seconds_per_gap_);
   result.end = rendering.run();
   statistics.share_done = rendering.share_done();
   finish(rendering.film(), result);

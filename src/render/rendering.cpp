@@ -72,22 +72,22 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
   if (options.checkpoint != nullptr && !options.checkpoint->chunks().empty()) restore();
 }
 
-void Rendering::expect_gaps(double seconds_per_pixel) {
+void Rendering::set_seconds_per_gap(double seconds_per_pixel) {
   progress_.seconds_per_gap = seconds_per_pixel;
   if (options_.deadline != nullptr)
     options_.deadline->keep_back(double(progress_.gaps) * seconds_per_pixel);
 }
 
 RenderEnd Rendering::run() {
-  const bool wants_typical = options_.method.row().wants_typical;
-  const auto typical = wants_typical ? float(typical_luminance()) : 0;
+  const bool uses_typical_luminance = options_.method.row().uses_typical_luminance;
+  const auto typical = uses_typical_luminance ? float(typical_luminance()) : 0;
   for (Work& w : work_) {
     w.rays.request.is_picture = typical > 0;
     w.rays.request.typical_luminance = typical;
   }
   agree_on_limits();
   RenderEnd end = RenderEnd::complete;
-  const uint32_t at_a_time = refining_.takes_turns ? 1 : steps_.first;
+  const uint32_t at_a_time = refining_.is_stepwise ? 1 : steps_.first;
   for (uint32_t pass = 0; pass < steps_.first && end == RenderEnd::complete; pass += at_a_time) {
     step({pass, pass + at_a_time}, all_tiles(), [&](uint32_t n, const PixelRect& tile, Work& w) {
       const int first = int(n) * samples_per_batch;
@@ -203,7 +203,7 @@ void Rendering::tell_progress(size_t tile, uint32_t step) {
     const std::lock_guard lock(progress_.mutex);
     if (step == 0) {
       progress_.gaps -= common_pixels(r, plan_.window);
-      expect_gaps(progress_.seconds_per_gap);
+      set_seconds_per_gap(progress_.seconds_per_gap);
     }
     const bool is_surrogate = step >= steps_.first && step < steps_.first + steps_.surrogates;
     if (!is_surrogate) ++progress_.tiles_done;
@@ -244,9 +244,9 @@ bool Rendering::trace_all(Work& w) {
 }
 
 // Returns the correction of LightOutlines::evened for a ray.
-Rgb Rendering::evened(const Work& w, size_t ray) const {
-  return refining_.outlines->evened(w.pixels[ray].x, w.pixels[ray].y, w.rays.places[ray],
-                                    w.radiance.known[ray].direct);
+Rgb Rendering::edge_correction(const Work& w, size_t ray) const {
+  return refining_.outlines->edge_correction(w.pixels[ray].x, w.pixels[ray].y, w.rays.places[ray],
+                                             w.radiance.known[ray].direct);
 }
 
 void Rendering::trace(Work& w) {
@@ -257,8 +257,8 @@ void Rendering::trace(Work& w) {
   for (size_t i = 0; i < w.rays.size(); ++i) {
     const auto [x, y] = w.pixels[i];
     if (refining_.has_surrogates) {
-      const Rgb even = evened(w, i);
-      w.radiance.evened.push_back(even);
+      const Rgb even = edge_correction(w, i);
+      w.radiance.edge_correction.push_back(even);
       w.radiance.direct[i] += even;
       w.radiance.known[i].direct += even;
     }

@@ -36,7 +36,7 @@ class Rendering {
             const StopFlag& stop);
 
   // Sets the time that a pixel without rays will take to fill, for the deadline.
-  void expect_gaps(double seconds_per_pixel);
+  void set_seconds_per_gap(double seconds_per_pixel);
 
   // Returns complete, good_enough, or stopped (by a request or a deadline).
   RenderEnd run();
@@ -91,7 +91,7 @@ class Rendering {
     std::optional<FurtherRays> wanted;
     bool has_begun = false;
     // all tiles finish a step before the next, so that a limit may end the work
-    bool takes_turns = true;
+    bool is_stepwise = true;
     bool has_surrogates = false;
   };
   // Numbers of a tile's steps (tile_book.h) by kind, in this order: passes over the whole picture,
@@ -121,7 +121,7 @@ class Rendering {
   bool is_limited() const { return options_.deadline != nullptr || options_.error_limit > 0; }
   void add_rays(const Pixel2& p, uint32_t count, Work& w) const;
   void trace(Work& w);
-  Rgb evened(const Work& w, size_t ray) const;
+  Rgb edge_correction(const Work& w, size_t ray) const;
   bool trace_all(Work& w);
   RenderEnd refine();
   RenderEnd refine_by_passes();

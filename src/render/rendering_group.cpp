@@ -31,7 +31,7 @@ bool Rendering::agree(bool value) {
 // Without limits, a tile does as many steps at a time as possible, which saves messages. A picture
 // that may have to end early advances evenly instead.
 void Rendering::agree_on_limits() {
-  if (options_.group != nullptr) refining_.takes_turns = agree(is_limited());
+  if (options_.group != nullptr) refining_.is_stepwise = agree(is_limited());
 }
 
 // Records are part of it only during the first passes; later ones do not change them.

@@ -33,7 +33,7 @@ RenderEnd Rendering::refine() {
 RenderEnd Rendering::refine_by_passes() {
   if (options_.group != nullptr) share_records();
   const PixelRecords& records = *refining_.records;
-  const uint32_t at_a_time = refining_.takes_turns ? 1 : steps_.further;
+  const uint32_t at_a_time = refining_.is_stepwise ? 1 : steps_.further;
   for (uint32_t pass = 0; pass < steps_.further; pass += at_a_time) {
     const uint32_t begin = steps_.first + pass, end = begin + at_a_time;
     step({begin, end}, all_tiles(), [&](uint32_t number, const PixelRect& tile, Work& w) {
@@ -60,7 +60,7 @@ RenderEnd Rendering::refine_by_tiles() {
   const auto act = [&](uint32_t number, const PixelRect& tile, Work& w) {
     return number < further ? add_surrogates(tile, w) : refine(tile, w);
   };
-  if (!refining_.takes_turns) {
+  if (!refining_.is_stepwise) {
     // Start the longest tiles first.
     step({steps_.first, steps_.all()}, leads() ? noisiest_first() : all_tiles(), act);
     return progress_.was_stopped ? RenderEnd::stopped : RenderEnd::complete;
@@ -216,7 +216,7 @@ bool Rendering::add_surrogates(const PixelRect& tile, Work& w) {
     w.radiance.known.assign(w.rays.size(), {});
     integrator_.surrogate_radiance(w.rays, *w.scratch, w.radiance, w.counters);
     for (size_t i = 0; i < w.rays.size(); ++i) {
-      w.radiance.known[i].direct += evened(w, i);
+      w.radiance.known[i].direct += edge_correction(w, i);
       film_.add_surrogate(w.pixels[i].x, w.pixels[i].y, w.radiance, i,
                           camera_.depth(w.radiance.position[i]));
     }

@@ -78,7 +78,7 @@ struct Light {
   SpotFalloff falloff = SpotFalloff::smooth_step;
   // point with a texture: irradiance on a plane across the axis is proportional to the picture.
   // The intensity at angle a from the axis is divided by cos³ a (Mitsuba's projector).
-  bool lights_plane_evenly = false;
+  bool has_uniform_plane = false;
   // point, spot, m. Above 0: distance where the light has faded to nothing. Below 0: minus the
   // focal distance of Radiance's spotlight. 0: inverse square without limit (light/no_surface.h).
   float range = 0;
@@ -107,7 +107,7 @@ inline bool is_delta(LightKind k) {
 // its triangle list, which Mesh::lights holds too.
 template <class Visit>
 void for_each_value(const Light& e, const Visit& visit) {
-  visit(uint64_t(e.kind) | uint64_t(e.is_two_sided) << 8 | uint64_t(e.lights_plane_evenly) << 9);
+  visit(uint64_t(e.kind) | uint64_t(e.is_two_sided) << 8 | uint64_t(e.has_uniform_plane) << 9);
   visit(e.radiance);
   visit(uint64_t(e.texture));
   visit(uint64_t(e.geometry));

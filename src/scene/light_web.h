@@ -23,9 +23,9 @@ enum class WebPole : uint8_t {
 struct LightWeb {
   std::string name;
   WebPole pole = WebPole::nadir;
-  std::vector<float> heights_rad;  // from the pole, ascending in [0, pi], at least 2
-  std::vector<float> turns_rad;    // ascending over at most 2 pi, at least 2
-  std::vector<float> intensities;  // [turn][height]; W/sr or cd; 0 beyond the angles
+  std::vector<float> vertical_angles_rad;    // from the pole, ascending in [0, pi], at least 2
+  std::vector<float> horizontal_angles_rad;  // ascending over at most 2 pi, at least 2
+  std::vector<float> intensities;            // [turn][height]; W/sr or cd; 0 beyond the angles
   // Luminous opening, which surfaces with this web are parts of, in the luminaire's axes: outward
   // face normals times area (m²), or the cross-section of a sphere (m²). Both empty for a point.
   std::vector<Vec3> faces;

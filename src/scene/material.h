@@ -119,7 +119,7 @@ struct Material {
   FloatInput alpha{1, no_texture, 3};
   float alpha_cutoff = 0.5f;
   // Light that it would mirror passes straight through instead (scene/mirror_image.h).
-  bool is_image = false;
+  bool is_mirror_pane = false;
 };
 
 // Calls visit(input) for every input of the scattering model that may be textured.

@@ -163,7 +163,7 @@ void ImageMaker::add_materials() {
   }
   out_.scene.materials.push_back(dark);
   out_.scene.materials.push_back(scene_.materials[mirror_.material]);
-  out_.scene.materials.back().is_image = true;
+  out_.scene.materials.back().is_mirror_pane = true;
 }
 
 // Copies only the textures that the image still uses.
@@ -370,7 +370,7 @@ std::pair<float, float> FlatMirror::heights(const Box& box) const {
   return {least, most};
 }
 
-std::optional<MirrorImage> image_in(const Scene& scene, const FlatMirror& mirror) {
+std::optional<MirrorImage> mirror_image_of(const Scene& scene, const FlatMirror& mirror) {
   return ImageMaker(scene, mirror).run();
 }
 

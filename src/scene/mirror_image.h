@@ -36,11 +36,11 @@ struct MirrorImage {
 
 // Returns a scene whose direct light equals the light that arrives by way of this mirror alone. The
 // part of the scene in front of the plane stays and occludes, but does not emit. Its mirror image
-// lies behind the plane and emits. An opaque wall with a pane for the mirror (Material::is_image)
-// divides them, and more walls around the front keep other light out.
+// lies behind the plane and emits. An opaque wall with a pane for the mirror
+// (Material::is_mirror_pane) divides them, and more walls around the front keep other light out.
 //
 // A light with any part behind the plane is left out. Returns nothing if a sphere or disk crosses
 // the plane, since these cannot be cut.
-std::optional<MirrorImage> image_in(const Scene& scene, const FlatMirror& mirror);
+std::optional<MirrorImage> mirror_image_of(const Scene& scene, const FlatMirror& mirror);
 
 }  // namespace troffer

@@ -144,7 +144,7 @@ UpDecision decide_up(const Scene& scene) {
                          : decide_by_evidence(scene, format, hints);
 }
 
-UpDecision asked_up(const Vec3& up) {
+UpDecision requested_up(const Vec3& up) {
   return {up, UpBasis::asked, "by --up", ""};
 }
 

@@ -31,7 +31,7 @@ struct UpDecision {
 UpDecision decide_up(const Scene& scene);
 
 // Decision for the direction of --up.
-UpDecision asked_up(const Vec3& up);
+UpDecision requested_up(const Vec3& up);
 
 // Returns "y" or "-z"; "0.6,0,0.8" for a direction along no axis.
 std::string name_of_up(const Vec3& up);

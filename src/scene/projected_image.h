@@ -23,7 +23,7 @@ inline Rgb projected(const Scene& scene, const Light& e, const Vec3& w) {
   const Vec2 uv{0.5f * (1 + w.x / w.z), 0.5f * (1 + w.y / w.z)};
   if (!(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1)) return Rgb{0};
   const Rgb value = evaluate(scene.textures, uint32_t(e.texture), uv).rgb;
-  return e.lights_plane_evenly ? value * inverse_cube_of_cosine(e, w) : value;
+  return e.has_uniform_plane ? value * inverse_cube_of_cosine(e, w) : value;
 }
 
 // Integral of that factor over all directions, by the midpoint rule with 256 × 256 samples.

@@ -106,7 +106,7 @@ struct Scene {
   std::vector<Camera> cameras;
   bool is_photometric = false;  // emission in cd/m² (glTF); else W/(m² sr)
   // Encoded bytes of the images that importers left out, if they were told to leave images out.
-  std::optional<uint64_t> left_out_image_bytes;
+  std::optional<uint64_t> skipped_image_bytes;
   WarningLog warnings;
 };
 

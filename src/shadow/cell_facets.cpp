@@ -36,8 +36,8 @@ bool plane_through(const Vec3d& a, const Vec3d& b, const Vec3d& inside, const Re
 
 }  // namespace
 
-void facets_before(const ReceiverHull& hull, const FlatCell& cell,
-                   std::span<const FacetToAdd> facets, std::vector<FacetToAdd>& out) {
+void facets_for_cell(const ReceiverHull& hull, const FlatCell& cell,
+                     std::span<const FacetToAdd> facets, std::vector<FacetToAdd>& out) {
   out.clear();
   const std::span<const Vec3d> corners = cell.all_corners();
   Vec3d middle;

@@ -12,7 +12,7 @@ namespace troffer {
 // Sets `out` to the facets that may meet a segment from the hull to the cell. Planes through an
 // edge of the cell that have hull and cell on one side decide. A facet beyond one of them is left
 // out.
-void facets_before(const ReceiverHull& hull, const FlatCell& cell,
-                   std::span<const FacetToAdd> facets, std::vector<FacetToAdd>& out);
+void facets_for_cell(const ReceiverHull& hull, const FlatCell& cell,
+                     std::span<const FacetToAdd> facets, std::vector<FacetToAdd>& out);
 
 }  // namespace troffer

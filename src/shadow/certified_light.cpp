@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "shadow/divide_far.h"
+#include "shadow/divide_sky_patch.h"
 #include "shadow/pilot_rays.h"
 
 namespace troffer {
@@ -58,7 +58,7 @@ void settle_flat(const SourceTask& task, ShadowScene& scene, CertifiedMemory& m)
   m.queue.sources.push_back(target);
   const size_t first_ray = m.queue.open.size();
   if (task.request.far != nullptr)
-    divide_far(task, m.members, hull, whole, scene, m.gather, m.counters);
+    divide_sky_patch(task, m.members, hull, whole, scene, m.gather, m.counters);
   else
     divide_flat(task, m.members, hull, whole, scene, m.gather, m.counters);
   FoundFacets& found = *task.request.found;
@@ -155,11 +155,11 @@ void find_unoccluded(const ShadowCluster& cluster, std::span<const LightRequest>
 // Error and cost limits of one source's masks. A ray costs about as much as 12 facets in a mask. A
 // source with the share s of the light is worth at most s / (4 E²) rays, each of variance ¼ or
 // less. A mask with more facets than these rays pay for is not worth its cost.
-Promise promise_of(const ShadowCluster& cluster, const LightRequest& request,
-                   const CertifiedOptions& options, CertifiedMemory& m) {
+MaskBudget mask_budget_of(const ShadowCluster& cluster, const LightRequest& request,
+                          const CertifiedOptions& options, CertifiedMemory& m) {
   constexpr double facets_per_ray = 12, least_budget = 256, least_far_budget = 64,
                    most_budget = facets_per_ray * most_rays_of_receiver;
-  Promise p;
+  MaskBudget p;
   p.error = options.mask_error;
   if (!(p.error > 0)) return p;
   double own = 0, total = 0;
@@ -185,9 +185,9 @@ Promise promise_of(const ShadowCluster& cluster, const LightRequest& request,
                            least_far_budget));
   p.far_open = m.far_open;
   // The smaller the error, the more rays a mask replaces, so longer lists pay off.
-  constexpr double even_error = 0.1;
+  constexpr double break_even_error = 0.1;
   p.longest_list =
-      p.budget * (request.far != nullptr ? 2 : std::pow(even_error / double(p.error), 1.5));
+      p.budget * (request.far != nullptr ? 2 : std::pow(break_even_error / double(p.error), 1.5));
   p.seen = m.seen;
   p.rest = m.rest;
   p.floor = m.floor;
@@ -205,7 +205,7 @@ void certified_light(const ShadowCluster& cluster, std::span<const LightRequest>
   find_unoccluded(cluster, requests, m);
   const bool is_far = std::any_of(requests.begin(), requests.end(),
                                   [](const LightRequest& r) { return r.far != nullptr; });
-  if (is_far) m.far_open = far_open_share(cluster, requests, m.all_unoccluded, scene);
+  if (is_far) m.far_open = sky_open_share(cluster, requests, m.all_unoccluded, scene);
   m.light.assign(n, 0);
   m.done.assign(n, 0);
   m.is_cast_in_parts = false;
@@ -221,7 +221,7 @@ void certified_light(const ShadowCluster& cluster, std::span<const LightRequest>
     m.unoccluded.assign(first, first + std::ptrdiff_t(n));
     const SourceTask task{
         options,      cluster,   request,         r,
-        m.unoccluded, integrand, m.wanted_points, promise_of(cluster, request, options, m)};
+        m.unoccluded, integrand, m.wanted_points, mask_budget_of(cluster, request, options, m)};
     const size_t queued = m.queue.size();
     if (begin_source(task, m)) {
       if (request.flat != nullptr)

@@ -50,7 +50,7 @@ struct CertifiedMemory {
   std::vector<SourceVisibility> answers;  // of the current source
   std::vector<SourceVisibility> waiting;  // answers of requests that wait for rays
   double far_open = 0.5;                  // estimated share of the light from infinity that arrives
-  std::vector<LeftPart> left;  // parts at infinity that the last call's answers leave out
+  std::vector<UnsettledPart> left;  // parts at infinity that the last call's answers leave out
   CertifiedCounters counters;
 };
 

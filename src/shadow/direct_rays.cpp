@@ -65,8 +65,8 @@ void weigh_points(size_t n, const float* __restrict x, const float* __restrict y
 // Turns points as seen from the receiver into segments from an origin that differs by `shift`,
 // shortened to the share `end`.
 TROFFER_MULTIVERSION
-void make_ways(size_t n, const Vec3& shift, float end, float* __restrict x, float* __restrict y,
-               float* __restrict z) {
+void shorten_segments(size_t n, const Vec3& shift, float end, float* __restrict x,
+                      float* __restrict y, float* __restrict z) {
   const Vec3 s = shift;
   for (size_t i = 0; i < n; ++i) {
     x[i] = (x[i] + s.x) * end;
@@ -219,7 +219,7 @@ class Caster {
     // the same end as in trace_rays.cpp
     const double origin_height = dot(source_.normal, Vec3d(r.origin) - source_.point);
     m_.ends[i] = float(std::max(1 - 1.25 * source_.tolerance / origin_height, 1e-3));
-    make_ways(rays_, r.position - r.origin, m_.ends[i], p.x.data(), p.y.data(), p.z.data());
+    shorten_segments(rays_, r.position - r.origin, m_.ends[i], p.x.data(), p.y.data(), p.z.data());
     for (size_t a = 0; a < 3; ++a) {
       const std::vector<float>& way = a == 0 ? p.x : a == 1 ? p.y : p.z;
       std::fill_n(m_.segments.from[a].data() + first, rays_, r.origin[a]);
@@ -326,13 +326,13 @@ double rays_for_share(const SourceTask& task) {
 }  // namespace
 
 double direct_rays_of(const SourceTask& task, ShadowScene& scene) {
-  FoundFacets::Dense& dense = task.request.found->dense;
+  FoundFacets::DirectRayPlan& dense = task.request.found->dense;
   if (dense.is_known()) return dense.rays;
   const LightRequest& request = task.request;
   dense.open_share =
       open_share(request, request.batch.empty() ? task.cluster.receivers : request.batch, scene);
   dense.rays = double(task.options.rays.most_direct_rays);
-  const Promise& promise = task.promise;
+  const MaskBudget& promise = task.promise;
   if (!(promise.error > 0)) return dense.rays;
   double own = 0, others = 0;
   for (size_t i = 0; i < task.cluster.size(); ++i) {

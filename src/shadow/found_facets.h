@@ -33,7 +33,7 @@ class FoundFacets {
 
   // Result of pilot rays straight to the source (direct_rays.h). It is the same for all clusters,
   // because the viewing rays of a pixel share a sequence across clusters.
-  struct Dense {
+  struct DirectRayPlan {
     double open_share = 0.5;
     double rays = 0;  // per receiver; 0: no pilot rays yet
 
@@ -41,7 +41,7 @@ class FoundFacets {
     // True if so much is open that no single facet can hide all of it.
     bool is_partly_open() const { return is_known() && open_share > 0.05; }
   };
-  Dense dense;
+  DirectRayPlan dense;
   // Tells if anything that rises over the source's plane comes within rounding distance of the
   // source. If so, rays must be traced to their ends.
   enum class Rim : uint8_t { unknown, none, some };

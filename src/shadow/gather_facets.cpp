@@ -29,14 +29,14 @@ Box padded_bounds(std::span<const Vec3d> points, double pad) {
 }
 
 // A shaft and the two bodies that it joins.
-struct Shot {
+struct ShaftQuery {
   const ReceiverHull& hull;
   const Shaft& shaft;
   const Box& source;
   uint64_t own;
 };
 
-void gather(const Shot& s, size_t most, ShadowScene& scene, ShadowCandidates& out,
+void gather(const ShaftQuery& s, size_t most, ShadowScene& scene, ShadowCandidates& out,
             CertifiedCounters& counters) {
   const Box receivers = padded_bounds({s.hull.corners.data(), size_t(s.hull.count)}, s.hull.slack);
   scene.candidates(s.shaft.all(), receivers, s.source, most, s.own, out);
@@ -113,8 +113,8 @@ double half_diameter_of(const ReceiverHull& hull) {
 // Fewest facets and round bodies before a sphere for which a cluster is halved.
 constexpr size_t fewest_to_halve = 8;
 
-// Relative costs (docs/method/certified.md): facets of a mask per direct ray; direct rays per mask, its
-// certificates and its pilot samples; facets gathered per ray.
+// Relative costs (docs/method/certified.md): facets of a mask per direct ray; direct rays per mask,
+// its certificates and its pilot samples; facets gathered per ray.
 constexpr double facets_per_ray = 6, rays_per_mask = 25, gathered_per_ray = 4;
 // Facets that a mask may always have.
 constexpr double fewest_facets = 384;
@@ -142,7 +142,7 @@ struct Division {
   size_t most_before_flat(size_t members, bool is_last) const {
     const size_t longest = most_facets(is_last);
     if (is_last || !(task.promise.error > 0)) return longest;
-    const FoundFacets::Dense& dense = task.request.found->dense;
+    const FoundFacets::DirectRayPlan& dense = task.request.found->dense;
     const double worth = dense.is_known() ? facets_per_ray * (dense.rays - rays_per_mask) : 0;
     const double shared = gathered_per_ray * double(members) * std::max(dense.rays, fewest_rays);
     return std::min(longest, size_t(std::min(std::max(worth, fewest_facets), shared)));

@@ -33,8 +33,8 @@ constexpr MaskShare unknown_share{0.5f, 0.25f};
 
 }  // namespace
 
-MaskShare look_at_cell(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
-                       uint64_t pass, MaskMemory& memory) {
+MaskShare mask_share_of(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
+                        uint64_t pass, MaskMemory& memory) {
   const MaskFrame& frame = cell.frame;
   const ShadowReceiver& r = cell.receiver(member);
   CoverageMask& mask = memory.mask;
@@ -112,16 +112,16 @@ void queue_samples(const SourceCellTask& cell, uint32_t member, float light, uin
                    passes);
 }
 
-MaskShare counted_look(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
+MaskShare counted_mask(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
                        uint64_t pass, MaskMemory& memory, SourceResults& results) {
   ++results.counters.masks;
   results.counters.mask_facets += facets.size();
-  return look_at_cell(cell, member, facets, pass, memory);
+  return mask_share_of(cell, member, facets, pass, memory);
 }
 
 void mask_complete(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
                    MaskMemory& memory, SourceResults& results) {
-  const MaskShare seen = counted_look(cell, member, facets, 0, memory, results);
+  const MaskShare seen = counted_mask(cell, member, facets, 0, memory, results);
   add_answer(cell, member, seen.share < 0 ? unknown_share : seen, ShadowAnswer::masked, results);
   if (seen.share > 0 && cell.source.wanted_points[member] > 0)
     add_integral(cell, member, seen.share * cell.unoccluded[member], seen.variance, memory,
@@ -156,7 +156,7 @@ float divide_open(const SourceCellTask& cell, uint32_t member, MaskMemory& memor
 // clear of cell.masked are open. Rays decide the others.
 void mask_incomplete(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
                      MaskMemory& memory, SourceResults& results) {
-  const MaskShare seen = counted_look(cell, member, facets, 0, memory, results);
+  const MaskShare seen = counted_mask(cell, member, facets, 0, memory, results);
   float free_share = 0;
   if (seen.share > 0 && cell.masked != nullptr) {
     OpenSamples free;
@@ -184,13 +184,13 @@ void mask_incomplete(const SourceCellTask& cell, uint32_t member, const FacetLis
 // Masks a receiver whose list is over budget. Several masks with different shifts share its many
 // rays, so that these do not repeat the same few hundred points. An integrand has its own number of
 // points and gets one mask, whose answer counts even if it finds nothing open.
-void mask_often(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
-                MaskMemory& memory, SourceResults& results) {
+void mask_over_budget(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
+                      MaskMemory& memory, SourceResults& results) {
   const bool has_integrand = cell.source.wanted_points[member] > 0;
   const uint32_t passes = has_integrand ? 1 : cell.source.options.masks_with_rays;
   bool is_above = false;
   for (uint32_t pass = 0; pass < passes; ++pass) {
-    const MaskShare seen = counted_look(cell, member, facets, pass, memory, results);
+    const MaskShare seen = counted_mask(cell, member, facets, pass, memory, results);
     is_above = is_above || seen.share >= 0;
     if (!(seen.share > 0)) continue;
     const float light = seen.share * cell.unoccluded[member];
@@ -210,14 +210,14 @@ void add_lit(const SourceCellTask& cell, uint32_t member, MaskMemory& memory,
   add_answer(cell, member, {1, 0}, ShadowAnswer::lit, results);
   if (cell.source.wanted_points[member] == 0) return;
   static const FacetList nothing;
-  if (look_at_cell(cell, member, nothing, 0, memory).share > 0)
+  if (mask_share_of(cell, member, nothing, 0, memory).share > 0)
     add_integral(cell, member, cell.unoccluded[member], 0, memory, results);
 }
 
 void mask_cell(const SourceCellTask& cell, std::span<const uint32_t> members,
                const FacetList& facets, MaskMemory& memory, SourceResults& results) {
   const auto mask =
-      cell.is_complete ? mask_complete : (cell.is_over_budget ? mask_often : mask_incomplete);
+      cell.is_complete ? mask_complete : (cell.is_over_budget ? mask_over_budget : mask_incomplete);
   for (const uint32_t m : members) mask(cell, m, facets, memory, results);
 }
 

@@ -28,8 +28,8 @@ struct MaskShare {
 };
 // Computes a mask of `facets`. Sets memory.samples to the open samples. pass: which of several
 // masks of the pair.
-MaskShare look_at_cell(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
-                       uint64_t pass, MaskMemory& memory);
+MaskShare mask_share_of(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
+                        uint64_t pass, MaskMemory& memory);
 
 // Adds the answer of a receiver that sees all of the cell.
 void add_lit(const SourceCellTask& cell, uint32_t member, MaskMemory& memory,

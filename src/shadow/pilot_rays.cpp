@@ -76,7 +76,7 @@ double unit_double(uint64_t random) {
 
 }  // namespace
 
-double far_open_share(const ShadowCluster& cluster, std::span<const LightRequest> requests,
+double sky_open_share(const ShadowCluster& cluster, std::span<const LightRequest> requests,
                       std::span<const float> unoccluded, ShadowScene& scene) {
   const size_t n = cluster.size(), rays = std::min(rays_of_receiver * n, most_far_rays);
   Pilots pilots;

@@ -13,7 +13,7 @@ namespace troffer {
 // Returns the share of the light from infinity that arrives, between 1/66 and 65/66. unoccluded:
 // per request and receiver, as CertifiedMemory::all_unoccluded. Returns ½ if there is no such
 // light.
-double far_open_share(const ShadowCluster& cluster, std::span<const LightRequest> requests,
+double sky_open_share(const ShadowCluster& cluster, std::span<const LightRequest> requests,
                       std::span<const float> unoccluded, ShadowScene& scene);
 
 // Returns the share of a flat source's light that arrives at the receivers, between 1/130 and

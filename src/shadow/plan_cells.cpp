@@ -46,7 +46,7 @@ class Plan {
     m_.has_own_facets.assign(m_.cells.size(), m_.cells.size() > 1 ? 1 : 0);
     m_.facets.resize(std::max(m_.facets.size(), m_.cells.size()));
     for (size_t c = 0; c < m_.cells.size() && m_.cells.size() > 1; ++c)
-      facets_before(part.hull, m_.cells[c], part.facets, m_.facets[c]);
+      facets_for_cell(part.hull, m_.cells[c], part.facets, m_.facets[c]);
     const size_t first = m_.cells.size();
     const bool is_coarse = task.options.lattice.rows < fine_lattice.rows;
     for (size_t c = 0; c < first; ++c) look(c, is_coarse);
@@ -112,7 +112,7 @@ class Plan {
   }
 
   double allowed_variance(uint32_t member, double light) const {
-    const Promise& p = task_.promise;
+    const MaskBudget& p = task_.promise;
     const double seen = double(p.seen[member]), floor = double(p.floor[member]);
     // If a pilot sees nothing of this source, the light of other sources decides how much that
     // matters.
@@ -128,8 +128,8 @@ class Plan {
     const size_t n = m_.cells.size();
     if (m_.facets.size() <= n) m_.facets.resize(n + 1);
     m_.has_own_facets.push_back(1);
-    facets_before(part_.hull, second, facets_of(part_, m_, cell), m_.facets[n]);
-    facets_before(part_.hull, first, facets_of(part_, m_, cell), kept_);
+    facets_for_cell(part_.hull, second, facets_of(part_, m_, cell), m_.facets[n]);
+    facets_for_cell(part_.hull, first, facets_of(part_, m_, cell), kept_);
     m_.facets[cell].swap(kept_);
     m_.has_own_facets[cell] = 1;
   }
@@ -177,7 +177,7 @@ void Plan::look(size_t c, bool is_coarse) {
     const MaskShare share =
         certificate == Certificate::lit
             ? MaskShare{1, 0}
-            : look_at_cell(task, p.member, left, first_pilot_pass + k, settle_.masks);
+            : mask_share_of(task, p.member, left, first_pilot_pass + k, settle_.masks);
     if (share.share < 0) continue;  // hardly any light
     p.light[c] = all * double(share.share);
     p.variance[c] = all * all * double(share.variance);

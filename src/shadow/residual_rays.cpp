@@ -51,7 +51,8 @@ bool is_same_pair(const RayGroup& a, const RayGroup& b) {
 // Sets the variance of several masks of a pair. Each has its own shift and its own rays, so their
 // spread estimates the error of masks and rays together. first: index of the first mask; the others
 // follow it.
-void tell_passes(std::span<const RayGroup> groups, size_t first, std::span<RayAnswer> answers) {
+void set_pass_variance(std::span<const RayGroup> groups, size_t first,
+                       std::span<RayAnswer> answers) {
   float sum = 0, squares = 0;
   for (size_t i = first; i < groups.size() && is_same_pair(groups[i], groups[first]); ++i) {
     sum += answers[i].light;
@@ -87,7 +88,7 @@ std::span<const RayAnswer> cast_residual_rays(const RayQueue& queue, ShadowScene
   }
   for (size_t i = 0; i < groups.size(); ++i)
     if (groups[i].passes > 1 && (i == 0 || !is_same_pair(groups[i - 1], groups[i])))
-      tell_passes(groups, i, memory.answers);
+      set_pass_variance(groups, i, memory.answers);
   for (const RaySource& s : queue.sources) s.found->trim(most_found);
   return memory.answers;
 }

@@ -80,8 +80,8 @@ bool is_dark(const SourceTask& task, const SourcePart& part, SettleMemory& memor
 }
 
 // Answers a part that is dark, or leaves it to the caller, without masks or rays.
-void set_aside(const SourceTask& task, const SourcePart& part, PartMemory& memory,
-               SourceResults& results) {
+void answer_without_masks(const SourceTask& task, const SourcePart& part, PartMemory& memory,
+                          SourceResults& results) {
   memory.cells.assign(1, {part.cell, coarse_lattice, {}});
   const std::span<const float> unoccluded = unoccluded_of(task, part, part.cell, memory);
   for (const uint32_t m : part.members)
@@ -98,7 +98,7 @@ void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& 
                       ShadowScene& scene, PartMemory& memory, SourceResults& results) {
   if (part.is_dark ||
       (part.is_over_budget && task.request.far != nullptr && results.left != nullptr))
-    return set_aside(task, part, memory, results);
+    return answer_without_masks(task, part, memory, results);
   if (!part.is_over_budget || is_dark(task, part, memory.settle))
     return settle_by_masks(task, part, stream, memory, results);
   // Receivers with an integrand need masks, because it is evaluated at open points.

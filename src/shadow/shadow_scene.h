@@ -15,7 +15,7 @@
 namespace troffer {
 
 constexpr uint32_t ray_is_free = 0xffffffffu;
-constexpr uint32_t ray_is_stopped = 0xfffffffeu;  // hit an occluder that is not a facet
+constexpr uint32_t ray_hit_non_facet = 0xfffffffeu;  // hit an occluder that is not a facet
 
 // Marks segments without a round source of their own. A round source, by the scene's numbering,
 // does not hide itself.
@@ -46,7 +46,7 @@ struct SegmentArrays {
   }
 };
 
-// First hit of a segment: ray_is_free, ray_is_stopped, or the id of a facet, and its position.
+// First hit of a segment: ray_is_free, ray_hit_non_facet, or the id of a facet, and its position.
 struct ShadowHit {
   uint32_t id = ray_is_free;
   float t = 1;  // 0 at `from`, 1 at `to`

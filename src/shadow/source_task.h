@@ -50,7 +50,7 @@ class ShadowIntegrand {
 };
 
 // The scene as seen from sources at infinity: large facets, which may hide much of them.
-struct FarScene {
+struct LargeFacets {
   std::vector<FacetToAdd> large;
 };
 
@@ -58,10 +58,10 @@ struct FarScene {
 struct LightRequest {
   const FlatSource* flat = nullptr;
   const SphereSource* sphere = nullptr;
-  uint64_t stream = 0;            // hash that is unique to the source, for random numbers
-  float brightness = 1;           // luminance of its radiance
-  FoundFacets* found = nullptr;   // results of earlier clusters; this one adds to it
-  const FarScene* far = nullptr;  // for flat sources at infinity, else null
+  uint64_t stream = 0;               // hash that is unique to the source, for random numbers
+  float brightness = 1;              // luminance of its radiance
+  FoundFacets* found = nullptr;      // results of earlier clusters; this one adds to it
+  const LargeFacets* far = nullptr;  // for flat sources at infinity, else null
   // Facets that hide this source only, in addition to the scene's.
   std::span<const FacetToAdd> frame{};
   // All receivers of the batch that this cluster belongs to. They share the number of direct rays.
@@ -73,7 +73,7 @@ struct LightRequest {
 // earlier sources, in sr of this source, and o of this one, s in total. The variance may be error²
 // s max(o, s / 2n), or error² floor² if that is more. Over all sources, in any order, this sums to
 // at most 1.5 error² times the squared total light.
-struct Promise {
+struct MaskBudget {
   float error = 0;                // relative to the light that arrives; 0: no limit
   double budget = 0;              // facets in the masks of one receiver
   std::span<const float> seen{};  // per receiver: light of earlier sources
@@ -93,7 +93,7 @@ struct SourceTask {
   std::span<const float> unoccluded;        // per receiver, of the whole source, sr
   ShadowIntegrand* integrand;               // null if no receiver has an integrand
   std::span<const uint32_t> wanted_points;  // per receiver, for the integrand
-  Promise promise{};
+  MaskBudget promise{};
 
   bool is_disk() const { return request.flat != nullptr && request.flat->is_disk; }
   // True if a receiver's own horizon acts as an occluder. The unoccluded light of polygons accounts
@@ -104,7 +104,7 @@ struct SourceTask {
 };
 
 // A part of a source at infinity that the answers leave out, for the caller to sample.
-struct LeftPart {
+struct UnsettledPart {
   uint32_t request;
   FlatCell cell;
   std::vector<float> unoccluded;  // per receiver, sr
@@ -115,7 +115,7 @@ struct SourceResults {
   std::span<CellSum> sums;  // per receiver
   RayQueue& rays;           // what only rays can settle
   CertifiedCounters& counters;
-  std::vector<LeftPart>* left = nullptr;  // null: no part may be left out
+  std::vector<UnsettledPart>* left = nullptr;  // null: no part may be left out
 };
 
 }  // namespace troffer

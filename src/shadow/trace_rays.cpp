@@ -9,7 +9,8 @@ bool is_free(const RaySource& source, const ShadowSegment& segment, const Shadow
   if (hit.id == ray_is_free) return true;
   if (source.is_round) return false;
   const auto height = [&](const Vec3& p) { return dot(source.normal, Vec3d(p) - source.point); };
-  if (hit.id == ray_is_stopped) return height(segment.from) * double(1 - hit.t) <= source.tolerance;
+  if (hit.id == ray_hit_non_facet)
+    return height(segment.from) * double(1 - hit.t) <= source.tolerance;
   for (const Vec3& v : scene.facet(hit.id))
     if (height(v) > source.tolerance) return false;
   return true;
@@ -19,8 +20,8 @@ namespace {
 
 // Traces rays of over-budget sources to just before the source, with the cheap test for any
 // occluder: their facets need no ids. Free rays are traced to the end only if a rim exists.
-void trace_without_names(std::span<const RaySource> sources, RayPlan& plan, ShadowScene& scene,
-                         TracedRays& t) {
+void trace_any_hit(std::span<const RaySource> sources, RayPlan& plan, ShadowScene& scene,
+                   TracedRays& t) {
   t.before.clear();
   t.has_rim.clear();
   t.picked.clear();
@@ -79,7 +80,7 @@ void look_at_hits(std::span<const RaySource> sources, const RayPlan& plan, const
                              : t.states[i] == RayState::free;
       tally.rays += 1;
       tally.free += t.is_free[i];
-      if (is_open && t.is_free[i] == 0 && t.hits[i].id != ray_is_stopped)
+      if (is_open && t.is_free[i] == 0 && t.hits[i].id != ray_hit_non_facet)
         found[g.source].push_back(t.hits[i].id);
     }
   }
@@ -93,7 +94,7 @@ void trace_rays(std::span<const RaySource> sources, RayPlan& plan, ShadowScene& 
                 TracedRays& out) {
   out.states.assign(plan.segments.size(), RayState::open);
   out.hits.assign(plan.segments.size(), ShadowHit{});
-  trace_without_names(sources, plan, scene, out);
+  trace_any_hit(sources, plan, scene, out);
   trace_open(plan, scene, out);
   look_at_hits(sources, plan, scene, out);
 }

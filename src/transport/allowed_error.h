@@ -19,10 +19,10 @@ inline double usual_luminance(std::vector<double> values) {
 }
 
 // Trade-off between the error of bright pixels and that of typical ones.
-struct AllowedOfBright {
+struct BrightPixelError {
   // Largest factor by which the allowed error lies below the one in proportion to the pixel's own
   // luminance.
-  double most_times_less = 4;
+  double largest_reduction = 4;
   // Exponent p of the allowed error b^(1 - p) t^p, with b the pixel's luminance and t the typical
   // one. The spread of a pixel's samples is proportional to b, and n samples err by b n^(-q / 2).
   // By Lagrange multipliers, a fixed number of samples leaves the least error if pixel errors are
@@ -36,10 +36,10 @@ struct AllowedOfBright {
 // of a typical one. Brighter pixels get an error between that and the one in proportion to their
 // own luminance.
 inline double allowed_error(double error, double luminance, double typical,
-                            const AllowedOfBright& of_bright = {}) {
+                            const BrightPixelError& of_bright = {}) {
   const double b = std::max(luminance, typical);
   const double t =
-      std::max(typical, b * std::pow(of_bright.most_times_less, -1 / of_bright.of_usual));
+      std::max(typical, b * std::pow(of_bright.largest_reduction, -1 / of_bright.of_usual));
   return error * std::pow(b, 1 - of_bright.of_usual) * std::pow(t, of_bright.of_usual);
 }
 

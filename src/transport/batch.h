@@ -87,7 +87,7 @@ struct RadianceBatch {
   // Luminance of `indirect` that the two errors above cover, minus the luminance of `direct` that
   // direct_variance does not cover (emission hit by a lobe's own ray). The error of the rest is
   // estimated from the spread of the samples. Empty if the method estimates no errors.
-  std::vector<float> indirect_with_error;
+  std::vector<float> luminance_with_error;
   // Properties of the first surface hit; zero if nothing is hit.
   std::vector<Rgb> albedo;
   std::vector<Vec3> normal, position;
@@ -100,7 +100,7 @@ struct RadianceBatch {
   std::vector<KnownRadiance> known;
   // Correction that has been added to `direct` and `known` to remove the noise of visible lamps'
   // edges. Its mean over a pixel is 0. Empty if there is none (LightOutlines).
-  std::vector<Rgb> evened;
+  std::vector<Rgb> edge_correction;
   // Largest luminance of `direct` that a single sampled point of a source has brought; 0 if none
   // was sampled. It bounds the error where no sample happened to be occluded, so that the samples
   // do not differ.
@@ -116,7 +116,7 @@ struct RadianceBatch {
     direct_variance.clear();
     shared_error.clear();
     drawn_error.clear();
-    indirect_with_error.clear();
+    luminance_with_error.clear();
     albedo.assign(n, Rgb{0});
     normal.assign(n, Vec3{});
     position.assign(n, Vec3{});
@@ -124,7 +124,7 @@ struct RadianceBatch {
     sources.assign(n, Rgb{0});
     records.clear();
     known.clear();
-    evened.clear();
+    edge_correction.clear();
     largest_draw = 0;
     noise = {};
   }
@@ -132,7 +132,7 @@ struct RadianceBatch {
   void enable_shared_error() {
     shared_error.resize(direct.size(), 0);
     drawn_error.resize(direct.size(), 0);
-    indirect_with_error.resize(direct.size(), 0);
+    luminance_with_error.resize(direct.size(), 0);
   }
   void enable_variance() { direct_variance.assign(direct.size(), 0); }
   void add(size_t i, bool is_direct, Rgb light, float variance) {
@@ -147,8 +147,8 @@ struct RadianceBatch {
   // is not used, the square of the luminance is added, since the mean square bounds the variance of
   // a sample.
   void exclude_from_error(size_t i, float luminance) {
-    if (!indirect_with_error.empty())
-      indirect_with_error[i] -= luminance;
+    if (!luminance_with_error.empty())
+      luminance_with_error[i] -= luminance;
     else if (!direct_variance.empty())
       direct_variance[i] += luminance * luminance;
   }

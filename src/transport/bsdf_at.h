@@ -1,4 +1,4 @@
-// BSDF of a surface at a vertex. Takes it from EvenScatterings if the material is the same
+// BSDF of a surface at a vertex. Takes it from UniformBsdfs if the material is the same
 // everywhere, and builds it otherwise. Used by all integrators at every hit. BSDFs are in the
 // vertex's shading frame.
 #pragma once
@@ -12,7 +12,7 @@ namespace troffer {
 
 inline Bsdf bsdf_at(const PreparedScene& scene, uint32_t material, const TexturePlace& uv,
                     bool is_front) {
-  const SurfaceScattering* even = scene.even_scatterings.find(material, is_front);
+  const SurfaceScattering* even = scene.uniform_bsdfs.find(material, is_front);
   if (even != nullptr) return even->whole;
   return make_bsdf(scene.bsdf_tables, scene.scene, material, uv, is_front);
 }
@@ -25,7 +25,7 @@ inline Bsdf bsdf_at(const PreparedScene& scene, const Vertex& v) {
 class ScatteringAt {
  public:
   ScatteringAt(const PreparedScene& scene, const Vertex& v)
-      : even_(scene.even_scatterings.find(v.surface.material, v.is_front)) {
+      : even_(scene.uniform_bsdfs.find(v.surface.material, v.is_front)) {
     if (even_ == nullptr)
       made_.emplace(
           make_bsdf(scene.bsdf_tables, scene.scene, v.surface.material, v.surface.uv, v.is_front));
@@ -35,7 +35,7 @@ class ScatteringAt {
 
   const Bsdf& whole() const { return even_ != nullptr ? even_->whole : *made_; }
   // The BSDF for take_far_side(), which modifies it. Call before in_parts(). Only for surfaces with
-  // two sides: EvenScatterings never holds them.
+  // two sides: UniformBsdfs never holds them.
   Bsdf& of_two_sides() { return made_.value(); }
   const SurfaceScattering& in_parts() {
     if (even_ != nullptr) return *even_;

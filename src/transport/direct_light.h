@@ -33,7 +33,7 @@ class DirectLight {
   virtual std::unique_ptr<DirectLightScratch> make_scratch() const = 0;
   virtual WalkedPart walked_part() const = 0;
   // True if queue() and flush() estimate RadianceBatch::direct_variance.
-  virtual bool tells_variance() const { return false; }
+  virtual bool estimates_variance() const { return false; }
 
   // Mirror images whose lights are added to the diffuse part of surfaces; null if there are none.
   // Walks must not count emission that they meet by way of such a mirror.

@@ -86,7 +86,7 @@ void LightTreeDirect::queue(WaveHits& wave, DirectLightScratch& scratch, Radianc
     LightConnection c;
     if (!connect(wave.vertices[i], wave.bsdfs[i], s.points[k], c)) continue;
     const float pdf_light = c.pdf_light * s.light_pmf[k];
-    if (!wave.going_on.empty()) c.pdf_bsdf *= wave.going_on[i];
+    if (!wave.continuation_ratio.empty()) c.pdf_bsdf *= wave.continuation_ratio[i];
     const float weight =
         has_competition(wave.bsdfs[i]) ? power_heuristic(pdf_light, c.pdf_bsdf) : 1;
     const Walk& walk = wave.walks[i];

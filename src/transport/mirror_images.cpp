@@ -178,7 +178,7 @@ std::shared_ptr<const MirrorImages> MirrorImages::make(const PreparedScene& scen
   if (scene.primitives.size() == 0) return nullptr;
   size_t triangles = 0;
   for (Candidate& c : best_of(scene)) {
-    std::optional<MirrorImage> made = image_in(scene.scene, c.mirror);
+    std::optional<MirrorImage> made = mirror_image_of(scene.scene, c.mirror);
     if (!made || made->lights.empty()) continue;
     triangles += triangle_count(made->scene);
     if (triangles > most_triangles) break;
@@ -205,7 +205,7 @@ int32_t MirrorImages::at(const Vertex& v) const {
 uint32_t MirrorImages::note_beyond(const Vertex& v, uint32_t note, bool is_scattered,
                                    const Vec3& direction) const {
   // True mirror reflection: the walk was neither scattered nor transmitted.
-  if (note != from_matte || is_scattered) return 0;
+  if (note != note_from_matte || is_scattered) return 0;
   const int32_t image = at(v);
   return image >= 0 && dot(direction, v.geometric_normal) > 0 ? first_image + uint32_t(image) : 0;
 }

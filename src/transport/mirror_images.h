@@ -34,10 +34,10 @@ class MirrorImages {
   int32_t at(const Vertex& v) const;
 
   // Notes in Walk::last_place for integrators that sample images at matte surfaces. Such an
-  // integrator must not count emission that a walk meets by way of an imaged mirror. from_matte:
-  // the walk comes straight from a matte surface. first_image + i: it comes from there by way of
-  // the mirror of image i.
-  static constexpr uint32_t from_matte = 1, first_image = 2;
+  // integrator must not count emission that a walk meets by way of an imaged mirror.
+  // note_from_matte: the walk comes straight from a matte surface. first_image + i: it comes from
+  // there by way of the mirror of image i.
+  static constexpr uint32_t note_from_matte = 1, first_image = 2;
   // Returns the note of a walk that came to v with `note` and leaves in `direction`: 0 or an
   // image's note. Panes that a walk passes straight through do not change its note.
   uint32_t note_beyond(const Vertex& v, uint32_t note, bool is_scattered,

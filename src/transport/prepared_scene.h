@@ -9,14 +9,14 @@
 
 #include "base/parallel.h"
 #include "bsdf/bsdf.h"
-#include "light/far_cells.h"
 #include "light/light_primitive.h"
+#include "light/sky_patches.h"
 #include "light/web.h"
 #include "scene/scene.h"
 #include "select/light_tree.h"
 #include "trace/tracer.h"
-#include "transport/even_scatterings.h"
 #include "transport/scene_glass.h"
+#include "transport/uniform_bsdfs.h"
 
 namespace troffer {
 
@@ -35,7 +35,7 @@ struct PreparedScene {
   PreparedScene(Scene relit, std::shared_ptr<const PreparedScene> base)
       : scene(with_room_for_tracer(with_levels(std::move(relit)))),
         bsdf_tables(scene),
-        even_scatterings(scene, bsdf_tables),
+        uniform_bsdfs(scene, bsdf_tables),
         glass(scene, bsdf_tables),
         panes(scene, glass),
         base_(std::move(base)),
@@ -50,7 +50,7 @@ struct PreparedScene {
 
   const Scene scene;
   const BsdfTables bsdf_tables;
-  const EvenScatterings even_scatterings;
+  const UniformBsdfs uniform_bsdfs;
   const SceneGlass glass;
   const PanePlaces panes;
 
@@ -67,14 +67,14 @@ struct PreparedScene {
 
   // Returns the sky patches of lights at infinity. They are built on first use, by any thread: an
   // image takes a while, and only certified light needs them.
-  const FarCells& far_cells() const {
+  const SkyPatches& far_cells() const {
     std::call_once(are_far_cells_made_, [&] { far_cells_.emplace(scene, primitives); });
     return *far_cells_;
   }
 
  private:
   mutable std::once_flag are_far_cells_made_;
-  mutable std::optional<const FarCells> far_cells_;
+  mutable std::optional<const SkyPatches> far_cells_;
 };
 
 }  // namespace troffer

@@ -200,7 +200,7 @@ void ShadowBatch::add(const Ray& ray, Rgb contribution, uint32_t index, bool dir
 
 // Adds the variance of each group to direct_variance. It is that of a mean of independent points,
 // an upper bound for stratified ones.
-void ShadowBatch::enable_variance(RadianceBatch& out) const {
+void ShadowBatch::add_variance(RadianceBatch& out) const {
   size_t i = 0;
   for (const Group& g : groups) {
     float sum = 0, squares = 0;
@@ -227,7 +227,7 @@ void ShadowBatch::resolve(const Tracer& tracer, Coherence coherence, RadianceBat
     contributions[i] *= factors[i];
     (is_direct[i] != 0 ? out.direct : out.indirect)[indices[i]] += contributions[i];
   }
-  if (!out.direct_variance.empty()) enable_variance(out);
+  if (!out.direct_variance.empty()) add_variance(out);
   groups.clear();
   counters.shadow_rays += rays.size();
   rays.clear();

@@ -134,7 +134,7 @@ struct ShadowBatch {
   void resolve(const Tracer& tracer, Coherence coherence, RadianceBatch& out, Counters& counters);
 
  private:
-  void enable_variance(RadianceBatch& out) const;
+  void add_variance(RadianceBatch& out) const;
 };
 
 }  // namespace troffer

@@ -21,7 +21,7 @@ struct WaveHits {
   std::vector<Bsdf> bsdfs;                     // for methods that use whole BSDFs; else empty
   std::vector<SurfaceScattering> scatterings;  // for methods that split them; else empty
   // Probability that the walk continues, over the probability that a light is sampled; empty: 1.
-  std::vector<float> going_on;
+  std::vector<float> continuation_ratio;
   // Positions of the hits on the radiosity mesh; empty until RadiosityLight::places fills them.
   std::vector<RadiosityPlace> places;
   const ViewingRays* viewing = nullptr;  // rays of the batch; null for sensors
@@ -35,7 +35,8 @@ struct WaveHits {
     vertices.push_back(other.vertices[i]);
     if (!other.bsdfs.empty()) bsdfs.push_back(other.bsdfs[i]);
     if (!other.scatterings.empty()) scatterings.push_back(other.scatterings[i]);
-    if (!other.going_on.empty()) going_on.push_back(other.going_on[i]);
+    if (!other.continuation_ratio.empty())
+      continuation_ratio.push_back(other.continuation_ratio[i]);
   }
   void clear() {
     walks.clear();
@@ -43,7 +44,7 @@ struct WaveHits {
     vertices.clear();
     bsdfs.clear();
     scatterings.clear();
-    going_on.clear();
+    continuation_ratio.clear();
     places.clear();
     viewing = nullptr;
   }

@@ -62,9 +62,9 @@ std::unique_ptr<IntegratorScratch> WaveIntegrator::make_scratch() const {
 void WaveIntegrator::begin(const SampleRequest& request, Scratch& s, RadianceBatch& out) const {
   direct_->begin(request, *s.direct);
   if (indirect_) indirect_->begin(request, *s.indirect);
-  if (direct_->tells_variance()) out.enable_variance();
+  if (direct_->estimates_variance()) out.enable_variance();
   // Direct variance then covers all light.
-  if (!indirect_ && has_surrogates_) out.indirect_with_error.assign(out.direct.size(), 0);
+  if (!indirect_ && has_surrogates_) out.luminance_with_error.assign(out.direct.size(), 0);
 }
 
 void WaveIntegrator::flush(Scratch& s, RadianceBatch& out, Counters& counters) const {

@@ -122,7 +122,7 @@ TEST_CASE("a preview comes before images are read, and changes nothing") {
   CHECK(has_image(load_scene(choice, {}, nullptr, true, up, show)));
   CHECK(shown == 1);
   choice.file = folder.write("plain.pbrt", lit_floor_pbrt);
-  CHECK(!load_scene(choice, {}, nullptr, true, up, show).left_out_image_bytes);
+  CHECK(!load_scene(choice, {}, nullptr, true, up, show).skipped_image_bytes);
   CHECK(shown == 1);  // nothing was left out
 
   const std::vector<std::string> plain{

@@ -194,7 +194,7 @@ TEST_CASE("cells of slats are narrow, those of a floor and at its edge are not")
   add_shelf(0.3f, 2);
   const Tracer tracer(s);
   CellMap map(tracer, size);
-  map.look_closely(true, 1);
+  map.resolve_narrow(true, 1);
   Random random(3);
   enum class On { floor, slat, shelf };
   std::vector<On> on;
@@ -222,15 +222,15 @@ TEST_CASE("cells of slats are narrow, those of a floor and at its edge are not")
   }
   CHECK(slats >= 60);
   // Switching it off unmarks existing and further cells.
-  map.look_closely(false, 2);
+  map.resolve_narrow(false, 2);
   for (size_t c = 0; c < on.size(); ++c) CHECK_FALSE(map.is_narrow(c));
-  map.look_closely(true, 2);
+  map.resolve_narrow(true, 2);
   for (size_t c = 0; c < on.size(); ++c) CHECK(map.is_narrow(c) == (on[c] == On::slat));
   CellMap none(tracer, size);
   CellHit hit = on_floor(0.015f, 0.4f);
   hit.position.z = 1.03f;
   CHECK_FALSE(none.would_be_narrow(hit, 5));
-  none.look_closely(true, 1);
+  none.resolve_narrow(true, 1);
   CHECK(none.would_be_narrow(hit, 5));
   hit.position.z = 0;
   CHECK_FALSE(none.would_be_narrow(hit, 5));

@@ -384,8 +384,8 @@ TEST_CASE("a measured luminaire keeps its flux") {
   const TempFolder folder;
   Scene scene;
   LightWeb web;  // 3 cd below, nothing above
-  web.heights_rad = {0, pi_f / 2, pi_f / 2 + 1e-4f, pi_f};
-  web.turns_rad = {0, 2 * pi_f};
+  web.vertical_angles_rad = {0, pi_f / 2, pi_f / 2 + 1e-4f, pi_f};
+  web.horizontal_angles_rad = {0, 2 * pi_f};
   web.intensities = {3, 3, 0, 0, 3, 3, 0, 0};
   scene.webs.push_back(web);
   Light e;

@@ -43,7 +43,7 @@ TEST_CASE("draws of sources bring coated surfaces all of their light") {
     GatherScratch scratch;
     scratch.light.reset(1);
     Counters counters;
-    walks.light_up(arrivals, scratch, counters);
+    walks.sample_direct_light(arrivals, scratch, counters);
     const Rgb sum = scratch.light.direct[0] + scratch.light.indirect[0];
     CHECK(double(luminance(sum)) / draws * pi == doctest::Approx(pi).epsilon(0.01));
   }
@@ -115,7 +115,7 @@ TEST_CASE("gather rays bring what gloss sends, though few go on from it") {
       CAPTURE(alpha);
       CAPTURE(is_of_rows);
       const PreparedScene scene(black_gloss(alpha, Cover::none));
-      const SurfaceScattering* gloss = scene.even_scatterings.find(0, true);
+      const SurfaceScattering* gloss = scene.uniform_bsdfs.find(0, true);
       REQUIRE(gloss != nullptr);
       const double all = double(luminance(albedo(gloss->specular, 0.8f)));
       REQUIRE(all > 0.01);
@@ -134,7 +134,7 @@ TEST_CASE("gather rays bring what a clear coat over black sends") {
   for (const Cover cover : {Cover::clear_coat, Cover::smooth_clear_coat}) {
     CAPTURE(int(cover));
     const PreparedScene scene(black_gloss(0.5f, cover));
-    const SurfaceScattering* gloss = scene.even_scatterings.find(0, true);
+    const SurfaceScattering* gloss = scene.uniform_bsdfs.find(0, true);
     REQUIRE(gloss != nullptr);
     double all = 0;
     constexpr uint32_t n = 1 << 16;

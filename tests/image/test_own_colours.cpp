@@ -48,7 +48,7 @@ struct Obeyed {
 };
 Obeyed obey(const std::vector<uint8_t>& bytes) {
   Raster raster = decode_raster(bytes, "file");
-  const ColoursFound found = obey_own_colours(raster);
+  const ColoursFound found = convert_to_srgb(raster);
   return {found, std::move(raster)};
 }
 
@@ -181,7 +181,7 @@ TEST_CASE("profiles that lie are left out: broken ones, and of other channels") 
       bad[i] = v;
       Raster raster = decode_raster(jpeg_of_good, "file");
       raster.own.profile = bad;
-      obey_own_colours(raster);
+      convert_to_srgb(raster);
       CHECK(raster.texels8.size() == 8 * 8 * 3);
     }
 }

@@ -161,7 +161,7 @@ TEST_CASE("images read on many threads make the scene that one thread makes") {
   for (const std::string& path : images.all()) {
     CAPTURE(path);
     const Scene one = import_on(1, path), many = import_on(4, path);
-    CHECK(!one.left_out_image_bytes);
+    CHECK(!one.skipped_image_bytes);
     REQUIRE(one.textures.size() == many.textures.size());
     CHECK(one.textures.size() >= Images::count - 2);
     for (size_t i = 0; i < one.textures.size(); ++i) {
@@ -189,8 +189,8 @@ TEST_CASE("a scene without its images has its shapes, and says how much it lacks
   for (const std::string& path : images.all()) {
     CAPTURE(path);
     const Scene shapes = import_scene(path, options), whole = import_scene(path);
-    REQUIRE(shapes.left_out_image_bytes);
-    CHECK(*shapes.left_out_image_bytes == bytes);
+    REQUIRE(shapes.skipped_image_bytes);
+    CHECK(*shapes.skipped_image_bytes == bytes);
     CHECK(triangle_count(shapes) == triangle_count(whole));
     CHECK(shapes.meshes.size() == whole.meshes.size());
     CHECK(shapes.warnings.total() == 0);
@@ -199,8 +199,8 @@ TEST_CASE("a scene without its images has its shapes, and says how much it lacks
   // A scene without images leaves nothing out.
   const std::string plain = images.folder.write("p.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
   const Scene scene = import_scene(plain, options);
-  REQUIRE(scene.left_out_image_bytes);
-  CHECK(*scene.left_out_image_bytes == 0);
+  REQUIRE(scene.skipped_image_bytes);
+  CHECK(*scene.skipped_image_bytes == 0);
 }
 
 TEST_CASE("lights of images are left out with the others") {
@@ -218,7 +218,7 @@ TEST_CASE("lights of images are left out with the others") {
     ImportOptions options;
     options.images = ImageUse::left_out;
     const Scene shapes = import_scene(path, options);
-    CHECK(*shapes.left_out_image_bytes == std::filesystem::file_size(folder.path("sky.pfm")));
+    CHECK(*shapes.skipped_image_bytes == std::filesystem::file_size(folder.path("sky.pfm")));
     CHECK(shapes.lights.empty());
     CHECK(shapes.warnings.total() == 0);
     CHECK(import_scene(path).lights.size() == 1);

@@ -171,7 +171,7 @@ TEST_CASE("an instancer copies while copies are few, and what has few triangles"
   CHECK(scene.instances[0].name == "name");
   CHECK(bounds.box().lower.x > 3);
   CHECK(bounds.box().upper.y > 9);
-  settle_instances(scene);
+  finalize_instances(scene);
   CHECK(scene.instances.size() == 10);
 }
 

@@ -466,7 +466,7 @@ TEST_CASE("a radius makes spheres of points and spots, as strong from far away")
   const LightWeb& web = s.webs[size_t(s.lights[1].web)];
   CHECK(double(web.cross_section) == doctest::Approx(pi * .01));
   CHECK(web.intensities[0] == 1);
-  CHECK(web.heights_rad.back() == doctest::Approx(std::acos(.5f)));
+  CHECK(web.vertical_angles_rad.back() == doctest::Approx(std::acos(.5f)));
   CHECK(web.intensities.back() == doctest::Approx(0));
   CHECK(s.lights[2].kind == LightKind::distant);
   CHECK(s.spheres[1].light == 1);

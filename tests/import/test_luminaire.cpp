@@ -61,24 +61,25 @@ Luminaire read(const std::string& text, const std::string& name = "a.ies") {
 
 // Returns the intensity at the nadir in the plane at `turn_deg`.
 double nadir(const Luminaire& l, double turn_deg) {
-  for (size_t i = 0; i < l.web.turns_rad.size(); ++i)
-    if (std::abs(double(l.web.turns_rad[i]) - rad_from_deg(turn_deg)) < 1e-4)
-      return double(l.web.intensities[i * l.web.heights_rad.size()]);
+  for (size_t i = 0; i < l.web.horizontal_angles_rad.size(); ++i)
+    if (std::abs(double(l.web.horizontal_angles_rad[i]) - rad_from_deg(turn_deg)) < 1e-4)
+      return double(l.web.intensities[i * l.web.vertical_angles_rad.size()]);
   return -1;
 }
 
 bool is_whole(const LightWeb& web) {
-  if (web.heights_rad.size() < 2 || web.turns_rad.size() < 2) return false;
+  if (web.vertical_angles_rad.size() < 2 || web.horizontal_angles_rad.size() < 2) return false;
   if (web.pole == WebPole::nadir &&
-      (web.turns_rad.front() != 0 || web.turns_rad.back() != 2 * pi_f))
+      (web.horizontal_angles_rad.front() != 0 || web.horizontal_angles_rad.back() != 2 * pi_f))
     return false;
-  for (size_t i = 1; i < web.turns_rad.size(); ++i)
-    if (!(web.turns_rad[i] > web.turns_rad[i - 1])) return false;
-  for (size_t i = 1; i < web.heights_rad.size(); ++i)
-    if (!(web.heights_rad[i] > web.heights_rad[i - 1])) return false;
+  for (size_t i = 1; i < web.horizontal_angles_rad.size(); ++i)
+    if (!(web.horizontal_angles_rad[i] > web.horizontal_angles_rad[i - 1])) return false;
+  for (size_t i = 1; i < web.vertical_angles_rad.size(); ++i)
+    if (!(web.vertical_angles_rad[i] > web.vertical_angles_rad[i - 1])) return false;
   for (const float v : web.intensities)
     if (!(v >= 0) || !std::isfinite(v)) return false;
-  return web.intensities.size() == web.heights_rad.size() * web.turns_rad.size();
+  return web.intensities.size() ==
+         web.vertical_angles_rad.size() * web.horizontal_angles_rad.size();
 }
 
 }  // namespace
@@ -93,7 +94,7 @@ TEST_CASE("LM-63: what stands in a file of any edition") {
     CHECK(l.opening.size.y == doctest::Approx(0.6));
     CHECK_FALSE(l.opening.is_round[0]);
     CHECK(is_whole(l.web));
-    CHECK(l.web.heights_rad.size() == 19);
+    CHECK(l.web.vertical_angles_rad.size() == 19);
     CHECK(double(l.web.intensities[12]) == doctest::Approx(500));
   }
 }

@@ -108,8 +108,8 @@ TEST_CASE("EULUMDAT: circles, and boxes whose sides shine part of their height")
 
 TEST_CASE("a face shines where more than a thousandth of the light leaves through it") {
   LightWeb web;
-  web.heights_rad = {0, float(pi / 4), float(pi / 2), float(pi)};
-  web.turns_rad = {0, 2 * pi_f};
+  web.vertical_angles_rad = {0, float(pi / 4), float(pi / 2), float(pi)};
+  web.horizontal_angles_rad = {0, 2 * pi_f};
   web.intensities = {100, 50, .05f, 0, 100, 50, .05f, 0};
   CHECK(shines_towards(web, {0, 0, 1}));
   for (const double turn : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0})

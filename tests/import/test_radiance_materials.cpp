@@ -104,9 +104,9 @@ TEST_CASE("spotlight: its focal distance, its beam, whatever surface it is on") 
       CHECK(double(-e.range) == doctest::Approx(f));
       const LightWeb& web = scene.webs.at(size_t(e.web));
       // The cosine up to 15 degrees, and zero beyond.
-      CHECK(double(web.heights_rad.back()) == doctest::Approx(rad_from_deg(15)));
-      for (size_t i = 0; i < web.heights_rad.size(); ++i)
-        CHECK(web.intensities[i] == doctest::Approx(std::cos(web.heights_rad[i])));
+      CHECK(double(web.vertical_angles_rad.back()) == doctest::Approx(rad_from_deg(15)));
+      for (size_t i = 0; i < web.vertical_angles_rad.size(); ++i)
+        CHECK(web.intensities[i] == doctest::Approx(std::cos(web.vertical_angles_rad[i])));
     }
   CHECK(spot("0 0 1", ring).lights.empty());  // into the surface
   const Scene ball = spot("0 0 -1", "sphere b 0 0 4 0 0 3 .2\n");

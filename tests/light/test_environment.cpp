@@ -199,8 +199,8 @@ TEST_CASE("a sky's and a sun's samples: density, radiance, irradiance") {
 
 TEST_CASE("a web: intensities between its angles, and a flux that they add up to") {
   LightWeb web;
-  web.heights_rad = {0, 0.6f, 1.2f, 1.8f};
-  web.turns_rad = {0, 1, 3, 2 * pi_f};
+  web.vertical_angles_rad = {0, 0.6f, 1.2f, 1.8f};
+  web.horizontal_angles_rad = {0, 1, 3, 2 * pi_f};
   Random random(6);
   for (int i = 0; i < 16; ++i) web.intensities.push_back(100 * random.next_float());
   for (size_t j = 0; j < 4; ++j) web.intensities[12 + j] = web.intensities[j];

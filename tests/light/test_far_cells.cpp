@@ -6,8 +6,8 @@
 #include "base/random.h"
 #include "base/units.h"
 #include "base/warp.h"
-#include "light/far_cells.h"
 #include "light/light.h"
+#include "light/sky_patches.h"
 #include "support/light_scenes.h"
 #include "support/surfaceless_lights.h"
 
@@ -41,7 +41,7 @@ struct Seen {
 };
 
 // Compares patches and light over directions all around.
-Seen look_round(const Scene& scene, const LightPrimitives& primitives, const FarCells& cells) {
+Seen look_round(const Scene& scene, const LightPrimitives& primitives, const SkyPatches& cells) {
   Seen seen;
   constexpr int n = 20000;
   Random random(5);
@@ -50,7 +50,7 @@ Seen look_round(const Scene& scene, const LightPrimitives& primitives, const Far
     const Vec3 w = sphere_from_square({u, random.next_float()});
     int found = 0;
     Rgb got;
-    for (const FarCell& cell : cells.all()) {
+    for (const SkyPatch& cell : cells.all()) {
       if (!cell.holds(w)) continue;
       ++found;
       const Vec3 y(Vec3d(w) * (cell.height / -dot(cell.plane.normal, Vec3d(w))));
@@ -77,7 +77,7 @@ TEST_CASE("far cells of a sky: every direction lies in one, of the sky's radianc
     Scene scene = unit_floor();
     scene.lights.push_back(clear_sky(zenith));
     const LightPrimitives primitives(scene);
-    const FarCells cells(scene, primitives);
+    const SkyPatches cells(scene, primitives);
     const Seen seen = look_round(scene, primitives, cells);
     CAPTURE(cells.all().size());
     CHECK(seen.none == 0);
@@ -93,7 +93,7 @@ TEST_CASE("far cells of an even environment are six, of one radiance") {
   Scene scene = unit_floor();
   add_environment(scene, Rgb{3});
   const LightPrimitives primitives(scene);
-  const FarCells cells(scene, primitives);
+  const SkyPatches cells(scene, primitives);
   REQUIRE(cells.all().size() == 6);
   const Seen seen = look_round(scene, primitives, cells);
   CHECK(seen.none == 0);
@@ -110,9 +110,9 @@ TEST_CASE("far cells of an image are cut where its energy is, and send all of it
   scene.environments.push_back(map);
   add_light(scene, LightKind::environment, Rgb{1}).environment = 0;
   const LightPrimitives primitives(scene);
-  const FarCells cells(scene, primitives);
+  const SkyPatches cells(scene, primitives);
   double steradians = 0, integral = 0, brightest = 0, smallest = 10;
-  for (const FarCell& cell : cells.all()) {
+  for (const SkyPatch& cell : cells.all()) {
     // Integrates h dA / r³ by the midpoints of a grid.
     constexpr int n = 64;
     double own = 0, light = 0;
@@ -150,9 +150,9 @@ TEST_CASE("a sun is a disk of its own angle") {
   e.angular_radius = 0.00465f;
   scene.lights.push_back(e);
   const LightPrimitives primitives(scene);
-  const FarCells cells(scene, primitives);
+  const SkyPatches cells(scene, primitives);
   REQUIRE(cells.all().size() == 1);
-  const FarCell& disk = cells.all()[0];
+  const SkyPatch& disk = cells.all()[0];
   CHECK(disk.is_disk);
   CHECK(disk.is_even);
   const Frame frame(-e.direction);

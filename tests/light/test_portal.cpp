@@ -6,9 +6,9 @@
 
 #include "base/random.h"
 #include "base/units.h"
-#include "light/far_cells.h"
 #include "light/light.h"
 #include "light/portal.h"
+#include "light/sky_patches.h"
 #include "support/chi_square.h"
 #include "support/light_scenes.h"
 #include "support/surfaceless_lights.h"
@@ -246,7 +246,7 @@ TEST_CASE("a sun through a portal: of its disc what the portal shows") {
 TEST_CASE("cells of an even light before a portal hold all that it shows, once") {
   const Scene s = with_portal(false);
   const LightPrimitives lights(s);
-  const FarCells cells(s, lights);
+  const SkyPatches cells(s, lights);
   Random random(4);
   const Portal& portal = *lights[0].portal;
   for (int i = 0; i < 3000; ++i) {
@@ -254,12 +254,12 @@ TEST_CASE("cells of an even light before a portal hold all that it shows, once")
         Vec3{random.next_float(), 2 * random.next_float() - 1, 2 * random.next_float() - 1} *
         Vec3{i % 2 == 0 ? 1.0f : 0.05f, 1, 1});
     int held = 0;
-    for (const FarCell& c : cells.all()) held += c.holds(wi) ? 1 : 0;
+    for (const SkyPatch& c : cells.all()) held += c.holds(wi) ? 1 : 0;
     CHECK(held == 1);
     CHECK(std::none_of(cells.all().begin(), cells.all().end(),
-                       [&](const FarCell& c) { return c.holds(-wi); }));
+                       [&](const SkyPatch& c) { return c.holds(-wi); }));
   }
-  for (const FarCell& c : cells.all()) {
+  for (const SkyPatch& c : cells.all()) {
     CHECK(c.mean == Rgb{2});
     CHECK(-dot(c.plane.normal, portal.axes()[2]) > -1e-9);
   }

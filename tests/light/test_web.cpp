@@ -111,14 +111,16 @@ TEST_CASE("looked up for many points, a web shines as by one search for each") {
     // The full range, or a part without the pole, the equator and half of the turns.
     const bool is_whole = trial % 2 == 0;
     const size_t wanted = trial < 3 ? 1 : trial < 10 ? 20 : 700;
-    web.heights_rad = uneven_angles(random, is_whole ? 0 : .3f, is_whole ? pi_f : 1.4f, wanted);
-    web.turns_rad = uneven_angles(random, is_whole ? -pi_f : .2f, is_whole ? pi_f : 4.2f, wanted);
+    web.vertical_angles_rad =
+        uneven_angles(random, is_whole ? 0 : .3f, is_whole ? pi_f : 1.4f, wanted);
+    web.horizontal_angles_rad =
+        uneven_angles(random, is_whole ? -pi_f : .2f, is_whole ? pi_f : 4.2f, wanted);
     // Smooth, so that rounding of angles has no visible effect.
-    const size_t n = web.heights_rad.size();
-    for (size_t i = 0; i < web.turns_rad.size(); ++i)
+    const size_t n = web.vertical_angles_rad.size();
+    for (size_t i = 0; i < web.horizontal_angles_rad.size(); ++i)
       for (size_t j = 0; j < n; ++j)
-        web.intensities.push_back(500 + 400 * std::cos(3 * web.turns_rad[i]) *
-                                            std::sin(2 * web.heights_rad[j]));
+        web.intensities.push_back(500 + 400 * std::cos(3 * web.horizontal_angles_rad[i]) *
+                                            std::sin(2 * web.vertical_angles_rad[j]));
     web.faces = {{.1f, 0, 0}, {0, 0, .4f}};
     std::vector<float> x, y, z;
     std::vector<Vec3> directions;

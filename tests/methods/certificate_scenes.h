@@ -55,7 +55,7 @@ inline void add_facet(Scene& s, const Placing& at, const Vec3d& corner, const Ve
   add_quad(s, 0, {at(corner), at(corner + u), at(corner + u + v), at(corner + v)});
 }
 
-// Adds a cell at infinity as in far_cells.h, or a sun, somewhere above.
+// Adds a cell at infinity as in sky_patches.h, or a sun, somewhere above.
 inline void add_far_source(Random& r, const Placing& at, CertificateScene& out) {
   const double distance = 0x1p20 * 4 * at.scale;
   const Framed frame(-normalize(Vec3d{0, 0, 1.1} + random_in_cube(r)));

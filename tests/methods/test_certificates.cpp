@@ -8,7 +8,7 @@
 #include <string>
 
 #include "certificate_scenes.h"
-#include "certified/far_draws.h"
+#include "certified/open_parts.h"
 #include "certified/shadow_world.h"
 #include "probe.h"
 #include "shadow/certified_light.h"
@@ -117,7 +117,8 @@ bool is_on(const FlatSource& s, const Vec3d& y) {
 
 // Sets `end` of the segment from x that reaches the source in the direction of `through`; false if
 // there is none. Anything within 2e-6 M of a flat source's plane counts as lying in it
-// (docs/method/certified.md, "Shafts"). Where light is claimed, the segment ends where that `slab` begins.
+// (docs/method/certified.md, "Shafts"). Where light is claimed, the segment ends where that `slab`
+// begins.
 bool aim(const CertificateScene& s, const Vec3d& x, const Vec3d& through, double slab, Vec3d& end) {
   const Vec3d d = through - x;
   if (s.shape == SourceShape::sphere) {
@@ -189,7 +190,7 @@ std::vector<SourceVisibility> answers_of(const CertificateScene& s, const Occlud
   FoundFacets found;
   LightRequest request{&s.flat, nullptr, 1, 1, &found};
   if (s.shape == SourceShape::sphere) request = {nullptr, &s.sphere, 1, 1, &found};
-  const FarScene far = far_scene(occluders);
+  const LargeFacets far = large_facets(occluders);
   if (s.is_far()) request.far = &far;
   CertifiedMemory memory;
   CertifiedOptions options;

@@ -260,10 +260,11 @@ namespace {
 
 // Lights a scene like further rays of a pixel: light samples replace certificates where those cost
 // more.
-WaveIntegrator drawn_or_certified(const PreparedScene& scene, int draws, int matte_times = 1) {
+WaveIntegrator drawn_or_certified(const PreparedScene& scene, int draws,
+                                  int matte_draw_factor = 1) {
   CertifiedSettings settings = certified_settings(0.1, scene.scene.lights.size());
   settings.draws = draws;
-  settings.matte_times = matte_times;
+  settings.matte_draw_factor = matte_draw_factor;
   return {scene,
           std::make_unique<CertifiedDirect>(scene, std::make_shared<const Occluders>(scene.scene),
                                             settings),

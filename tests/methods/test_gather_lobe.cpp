@@ -53,7 +53,7 @@ Rays gather(const GatherLobe& lobe, size_t n, uint64_t seed) {
   for (size_t i = 0; i < n; ++i) {
     float weight = 0;
     const Vec2 number{random.next_float(), random.next_float()};
-    const Vec3 d = lobe.direction(GatherAim(), at, number, random.next_float(), weight);
+    const Vec3 d = lobe.direction(GatherDistribution(), at, number, random.next_float(), weight);
     if (!(weight > 0)) continue;
     const float light = weight * (d.x > 0 ? 3.0f : 1.0f);
     const float shown = light * luminance(lobe.share_of(d));

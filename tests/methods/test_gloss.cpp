@@ -57,7 +57,7 @@ TEST_CASE("gloss: an open source is hardly noisy over rough metal and coats") {
 // A few points of such a source then say what all say.
 TEST_CASE("gloss: a source is gentle that is small beside the lobe, however near or narrow") {
   const PreparedScene scene(glossy_room(MaterialKind::conductor, 0.3f, false));
-  SourceIntegrand integrand(scene, 32, LobeCompetition(scene, 32));
+  SourceIntegrand integrand(scene, 32, NominalSourceDensity(scene, 32));
   CertifiedSource panel;
   REQUIRE(make_flat_source(
       std::vector<Vec3>{{-0.5f, -0.5f, 2}, {-0.5f, 0.5f, 2}, {0.5f, 0.5f, 2}, {0.5f, -0.5f, 2}},

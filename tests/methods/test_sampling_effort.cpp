@@ -36,7 +36,7 @@ Scene floor_below(int n, bool is_glossy, bool has_sky) {
 WaveIntegrator drawing(const PreparedScene& scene) {
   CertifiedSettings settings = certified_settings(0.1, scene.scene.lights.size());
   settings.draws = 16;
-  settings.matte_times = 2;
+  settings.matte_draw_factor = 2;
   return {scene,
           std::make_unique<CertifiedDirect>(scene, std::make_shared<const Occluders>(scene.scene),
                                             settings),

@@ -63,7 +63,7 @@ class OfficePost final : public Post {
 
 // Runs body(group) as each process. Rank 0 runs in this thread, which waits for all.
 template <class Body>
-void run_crew(Office& office, const Leader::Warn& warn, const Body& body) {
+void run_group(Office& office, const Leader::Warn& warn, const Body& body) {
   std::vector<std::thread> others;
   std::atomic<int> at_work = office.size() - 1;
   for (int r = 1; r < office.size(); ++r)

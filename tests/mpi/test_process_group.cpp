@@ -73,7 +73,7 @@ TEST_CASE("every process comes to know what all have done") {
   for (const int size : {1, 2, 3, 8}) {
     Office office(size);
     std::array<std::atomic<int>, 4> acts{};
-    run_crew(office, nullptr, [&](ProcessGroup& group) {
+    run_group(office, nullptr, [&](ProcessGroup& group) {
       uint64_t job = 0;
       for (const size_t n : {size_t(0), size_t(1), size_t(40), size_t(3)}) {
         Numbers numbers(job, n);
@@ -97,7 +97,7 @@ TEST_CASE("every process comes to know what all have done") {
 TEST_CASE("who is to do an item is told what it needs; rank 0 alone gets what came of it") {
   Office office(3);
   std::atomic<int> by_others = 0;
-  run_crew(office, nullptr, [&](ProcessGroup& group) {
+  run_group(office, nullptr, [&](ProcessGroup& group) {
     constexpr size_t n = 60;
     std::vector<uint64_t> state(n, group.leads() ? 5 : 0);
     SharedWork work;
@@ -128,7 +128,7 @@ TEST_CASE("who is to do an item is told what it needs; rank 0 alone gets what ca
 TEST_CASE("a process that dies costs what it had under way, and nobody the results") {
   Office office(6);
   std::atomic<int> by_dead = 0;
-  run_crew(office, nullptr, [&](ProcessGroup& group) {
+  run_group(office, nullptr, [&](ProcessGroup& group) {
     for (uint64_t job = 0; job < 3; ++job) {
       Numbers numbers(job, 200);
       const auto act = numbers.work.act;
@@ -149,7 +149,7 @@ TEST_CASE("a process that dies costs what it had under way, and nobody the resul
 TEST_CASE("a process that leaves is told of, and its items are others'") {
   Office office(4);
   std::vector<std::string> warnings;
-  run_crew(
+  run_group(
       office, [&](const std::string& w) { warnings.push_back(w); },
       [&](ProcessGroup& group) {
         if (group.rank() == 2) return group.leave("no such file");
@@ -173,7 +173,7 @@ TEST_CASE("all stop, whoever is asked to") {
     Office office(3);
     StopFlag asked = false;
     std::atomic<int> stopped = 0;
-    run_crew(office, nullptr, [&](ProcessGroup& group) {
+    run_group(office, nullptr, [&](ProcessGroup& group) {
       if (group.rank() == asked_rank) group.watch(asked);
       Numbers numbers(0, 1'000'000);
       const auto act = numbers.work.act;
@@ -197,7 +197,7 @@ TEST_CASE("all stop, whoever is asked to") {
 TEST_CASE("work that rank 0 breaks off ends for all, and is not taken for a signal") {
   Office office(3);
   StopFlag is_over = false;
-  run_crew(office, nullptr, [&](ProcessGroup& group) {
+  run_group(office, nullptr, [&](ProcessGroup& group) {
     Numbers numbers(0, 1'000'000);
     numbers.work.act = [&, act = numbers.work.act](size_t i, size_t slot) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -211,7 +211,7 @@ TEST_CASE("work that rank 0 breaks off ends for all, and is not taken for a sign
 
 TEST_CASE("an error where an item is done is that process's alone") {
   Office office(3);
-  run_crew(office, nullptr, [&](ProcessGroup& group) {
+  run_group(office, nullptr, [&](ProcessGroup& group) {
     Numbers numbers(0, 100);
     numbers.work.act = [&, act = numbers.work.act](size_t i, size_t slot) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));

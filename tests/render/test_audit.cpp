@@ -99,7 +99,7 @@ TEST_CASE("audit: what is found at the first look is looked at once more, which 
   const AuditFinding cleared = found(0.1, 0, both), confirmed = found(0.1, 0.1, both);
   CHECK(cleared.bias == 0);
   CHECK(confirmed.bias == doctest::Approx(0.1).epsilon(0.05));
-  CHECK(!confirmed.is_slight);
+  CHECK(!confirmed.needed_second_look);
 }
 
 TEST_CASE("audit: lists that agree are found fault with once in a hundred times") {

@@ -27,7 +27,7 @@ double told_over_made(uint32_t n, bool is_expected, const Value& value) {
         RadianceBatch batch;
         batch.reset(1);
         batch.enable_variance();
-        batch.indirect_with_error.assign(1, 0);
+        batch.luminance_with_error.assign(1, 0);
         batch.known.assign(1, {});
         const double v = value(stream, i, SobolGroup(stream, 0, i).get2());
         batch.direct[0] = Rgb{float(v)};

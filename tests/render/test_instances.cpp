@@ -138,7 +138,8 @@ TEST_CASE("instances before a mirror, behind it and across it") {
   mirror.tolerance = 1e-5f;
   mirror.outline = {{-1, 0, 0.5f}, {1, 0, 0.5f}, {1, 0, 2}, {-1, 0, 2}};
   mirror.material = 0;
-  const auto image = image_in(scene, mirror), expected = image_in(copied_out(scene), mirror);
+  const auto image = mirror_image_of(scene, mirror),
+             expected = mirror_image_of(copied_out(scene), mirror);
   REQUIRE(image);
   REQUIRE(expected);
   CHECK(image->scene.instances.size() == 2);  // the one in front of the mirror, and its image

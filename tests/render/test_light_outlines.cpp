@@ -35,7 +35,7 @@ struct Lamps {
 
 // Sums over places in a pixel: what rays see of lamps, and the corrected values.
 struct Sums {
-  double seen = 0, evened = 0, evening = 0, squares = 0;
+  double seen = 0, edge_correction = 0, evening = 0, squares = 0;
   int count = 0;
 };
 
@@ -74,7 +74,7 @@ Found look(Lamps lamps, bool knows = true) {
           else if (const auto& lights = scene.scene.meshes[g].lights; !lights.empty())
             seen = scene.scene.lights[size_t(lights[hits[i].primitive])].radiance;
         }
-        const double even = double(outlines.evened(x, y, places[i], seen).g);
+        const double even = double(outlines.edge_correction(x, y, places[i], seen).g);
         s.seen += double(seen.g) / n;
         s.evening += even / n;
         s.squares += std::pow(double(seen.g) + even, 2) / n;
@@ -179,7 +179,8 @@ TEST_CASE("light outlines: sides that pieces share do not count twice, in large 
       scene.tracer.closest(rays, hits);
       double mean = 0;
       for (uint32_t i = 0; i < n; ++i)
-        mean += double(outlines.evened(x, y, places[i], Rgb{hits[i].is_valid() ? 1.0f : 0.0f}).g);
+        mean += double(
+            outlines.edge_correction(x, y, places[i], Rgb{hits[i].is_valid() ? 1.0f : 0.0f}).g);
       CHECK(std::abs(mean / n) < 0.004);
       bias += mean / n;
     }
@@ -213,7 +214,8 @@ TEST_CASE("light outlines: nothing is known of what hides, varies or is out of f
   const ViewingCamera from_behind(away.camera, side, side);
   const LightOutlines outlines(dark, from_behind, window, true, 1);
   for (int y = 0; y < side; ++y)
-    for (int x = 0; x < side; ++x) CHECK(outlines.evened(x, y, {0.3f, 0.6f}, Rgb{0}).is_black());
+    for (int x = 0; x < side; ++x)
+      CHECK(outlines.edge_correction(x, y, {0.3f, 0.6f}, Rgb{0}).is_black());
   textured.scene.textures.emplace_back();
   textured.scene.lights[0].texture = 0;
   CHECK(look(textured).known == 0);

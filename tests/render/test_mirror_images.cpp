@@ -194,7 +194,7 @@ TEST_CASE("the image of a scene: what is cut, what is behind, what cannot be cut
   m.tolerance = 1e-5f;
   m.outline = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
   m.material = material;
-  const auto image = image_in(s, m);
+  const auto image = mirror_image_of(s, m);
   REQUIRE(image.has_value());
   REQUIRE(image->lights == std::vector<uint32_t>{0});
   CHECK(image->scene.lights[0].polygon.at(0).z == doctest::Approx(-2));
@@ -211,5 +211,5 @@ TEST_CASE("the image of a scene: what is cut, what is behind, what cannot be cut
   CHECK(behind == doctest::Approx(1));
   Scene with_sphere = s;
   with_sphere.spheres.push_back({{5, 5, 0.2f}, 0.5f, false, grey, no_light});
-  CHECK(!image_in(with_sphere, m).has_value());
+  CHECK(!mirror_image_of(with_sphere, m).has_value());
 }

@@ -17,8 +17,8 @@ PointLight of_errors(double lx, double direct, double indirect) {
   p.all = {Rgb{}, lx, std::hypot(direct, indirect)};
   p.direct = {Rgb{}, lx / 2, direct};
   p.indirect = {Rgb{}, lx / 2, indirect};
-  p.seldom_error = direct;
-  p.often_error = indirect;
+  p.direct_part_error = direct;
+  p.other_part_error = indirect;
   return p;
 }
 
@@ -126,8 +126,8 @@ TEST_CASE("a list errs by what is aimed at, by hardly more samples than the leas
       const double weight = 0.5 / (own * own) + 0.5 / (mean * mean);
       squares += weight * error * error / double(points);
       of_one = std::max(of_one, error / own);
-      deviations += std::sqrt(weight) *
-                    (l[i].seldom_error * std::sqrt(16.0) + l[i].often_error * std::sqrt(32.0));
+      deviations += std::sqrt(weight) * (l[i].direct_part_error * std::sqrt(16.0) +
+                                         l[i].other_part_error * std::sqrt(32.0));
     }
     CHECK(std::sqrt(squares) <= 0.0025 * 1.0001);
     CHECK(of_one <= 2 * 0.0025 * 1.0001);

@@ -36,7 +36,7 @@ PointLight point(Random& random, double lx, double noise, double rare, double me
   }
   PointLight p;
   p.all = p.indirect = {Rgb{}, sets.luminance(), sets.standard_error()};
-  p.often_error = sets.standard_error();
+  p.other_part_error = sets.standard_error();
   p.kurtosis = sets.kurtosis();
   p.samples = 4096;
   return p;
@@ -87,14 +87,14 @@ TEST_CASE("points that missed rare light are told what others of the list have m
   std::vector<PointLight> few = points;
   size_t quiet = 0;
   while (few[quiet].all.standard_error > 0.1) ++quiet;
-  tell_rare_light(few, {quiet});
+  raise_errors_for_rare_light(few, {quiet});
   CHECK(few[quiet].all.standard_error > 0.5);
   CHECK(few[quiet + 1].all.standard_error == points[quiet + 1].all.standard_error);
-  tell_rare_light(points, all_of(points));
+  raise_errors_for_rare_light(points, all_of(points));
   CHECK(share_that_holds(points, 100) > 0.95);
   for (const PointLight& p : points) {
     CHECK(p.indirect.standard_error == doctest::Approx(p.all.standard_error));
-    CHECK(p.often_error == doctest::Approx(p.all.standard_error));
+    CHECK(p.other_part_error == doctest::Approx(p.all.standard_error));
   }
 }
 
@@ -103,12 +103,12 @@ TEST_CASE("points whose sets are as normal keep their errors, and so does one by
   std::vector<PointLight> points;
   for (int i = 0; i < 300; ++i) points.push_back(point(random, 100, i % 2 == 0 ? 0.01 : 0.1, 0, 0));
   const std::vector<PointLight> before = points;
-  tell_rare_light(points, all_of(points));
+  raise_errors_for_rare_light(points, all_of(points));
   for (size_t i = 0; i < points.size(); ++i)
     CHECK(points[i].all.standard_error <= before[i].all.standard_error * 1.1);
   std::vector<PointLight> one{point(random, 100, 0.001, 0.02, 1)};
   const double own = one[0].all.standard_error;
-  tell_rare_light(one, all_of(one));
+  raise_errors_for_rare_light(one, all_of(one));
   CHECK(one[0].all.standard_error == doctest::Approx(own));
 }
 
@@ -119,7 +119,7 @@ TEST_CASE(
   for (int i = 0; i < 100; ++i) points.push_back(point(random, 1e-3, 0.01, 0.9, 1));
   for (int i = 0; i < 100; ++i) points.push_back(point(random, 100, 0.01, 0, 0));
   const std::vector<PointLight> before = points;
-  tell_rare_light(points, all_of(points));
+  raise_errors_for_rare_light(points, all_of(points));
   for (size_t i = 0; i < 100; ++i) CHECK(points[i].all.standard_error < 3e-3);
   for (size_t i = 100; i < 200; ++i)
     CHECK(points[i].all.standard_error < 1.2 * before[i].all.standard_error);

@@ -173,7 +173,7 @@ int wanted_amid(const Value& value, bool tells = false) {
         batch.reset(1);
         if (tells) {
           batch.enable_variance();
-          batch.indirect_with_error.assign(1, 0);
+          batch.luminance_with_error.assign(1, 0);
         }
         batch.direct[0] = Rgb{float(value(x, y, k))};
         film.add(x, y, batch, 0, 3);

@@ -171,7 +171,10 @@ TEST_CASE("outlines of lamps are the same for every region of the picture") {
         off += part.has_outline(x, y) != whole.has_outline(x, y) ? 1 : 0;
         off += part.is_known(x, y) != whole.is_known(x, y) ? 1 : 0;
         for (const Vec2& place : {Vec2{0.1f, 0.2f}, {0.7f, 0.6f}})
-          off += part.evened(x, y, place, Rgb{0}) == whole.evened(x, y, place, Rgb{0}) ? 0 : 1;
+          off += part.edge_correction(x, y, place, Rgb{0}) ==
+                         whole.edge_correction(x, y, place, Rgb{0})
+                     ? 0
+                     : 1;
       }
   }
   CHECK(known > 100);

@@ -102,16 +102,16 @@ TEST_CASE("lamps evened out: no pixel sends less light than none, but what its r
   RadianceBatch b;
   b.reset(1);
   b.known.assign(1, {});
-  b.evened = {Rgb{-0.5f, 0.25f, 0.25f}};
-  b.direct = {Rgb{0.2f} + b.evened[0]};
-  b.known[0].direct = b.evened[0];
+  b.edge_correction = {Rgb{-0.5f, 0.25f, 0.25f}};
+  b.direct = {Rgb{0.2f} + b.edge_correction[0]};
+  b.known[0].direct = b.edge_correction[0];
   film.add(0, 0, b, 0, 0);
   CHECK(film.layers()[0].image.at(0, 0).r == doctest::Approx(0.2f));
   CHECK(film.layers()[0].image.at(0, 0).g == doctest::Approx(0.2f));
   // A pixel that stays positive keeps the correction.
-  b.evened = {Rgb{0.25f}};
-  b.direct = {Rgb{0.2f} + b.evened[0]};
-  b.known[0].direct = b.evened[0];
+  b.edge_correction = {Rgb{0.25f}};
+  b.direct = {Rgb{0.2f} + b.edge_correction[0]};
+  b.known[0].direct = b.edge_correction[0];
   film.add(1, 0, b, 0, 0);
   CHECK(film.layers()[0].image.at(1, 0).r == doctest::Approx(0.45f));
 }

@@ -33,7 +33,7 @@ TEST_CASE("patterns of alpha keep their operands in a mirror image") {
   mirror.tolerance = 1e-5f;
   mirror.outline = {{-1, 0, 0.5f}, {1, 0, 0.5f}, {1, 0, 2}, {-1, 0, 2}};
   mirror.material = add_material(scene, metal);
-  const std::optional<MirrorImage> image = image_in(scene, mirror);
+  const std::optional<MirrorImage> image = mirror_image_of(scene, mirror);
   REQUIRE(image.has_value());
   for (const Material& m : image->scene.materials) {
     if (!m.is_alpha_masked) continue;

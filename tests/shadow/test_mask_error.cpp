@@ -39,7 +39,7 @@ Errors errors_of(const MaskLattice& lattice, const Vec3& normal,
     double mean = 0, squares = 0;
     for (uint64_t pass = 0; pass < passes; ++pass) {
       const MaskShare seen =
-          look_at_cell({task, frame, one.unoccluded, 1, true, false}, 0, list, pass, memory);
+          mask_share_of({task, frame, one.unoccluded, 1, true, false}, 0, list, pass, memory);
       const double share = seen.share < 0 ? 0.5 : double(seen.share);
       mean += share / passes;
       squares += share * share / passes;

@@ -143,7 +143,7 @@ TEST_CASE("masks: what a cell's list leaves out hides nothing of the cell") {
     std::vector<FacetToAdd> facets, before;
     for (uint32_t i = 0; i < world.facets.size(); ++i)
       facets.push_back({world.facets[i], i, false});
-    facets_before(one.cluster.hull, cell, facets, before);
+    facets_for_cell(one.cluster.hull, cell, facets, before);
     all += facets.size();
     kept += before.size();
     std::vector<uint8_t> is_kept(facets.size(), 0);

@@ -18,7 +18,7 @@ void queue_open(OneSource& one, float light, uint32_t passes = 1) {
   MaskMemory memory;
   one.queue.frames.push_back(frame);
   for (uint32_t pass = 0; pass < passes; ++pass) {
-    look_at_cell({task, frame, one.unoccluded, 1, false, passes > 1}, 0, {}, pass, memory);
+    mask_share_of({task, frame, one.unoccluded, 1, false, passes > 1}, 0, {}, pass, memory);
     one.queue.add(0, one.receivers[0].origin, memory.samples, light, one.unoccluded[0], pass,
                   passes);
   }

@@ -338,7 +338,7 @@ TEST_CASE("masks: of a complete list they are the answer") {
   constexpr int passes = 200;
   for (uint64_t pass = 0; pass < passes; ++pass) {
     const SourceCellTask cell{task, frame, one.unoccluded, 1, true, false};
-    const MaskShare seen = look_at_cell(cell, 0, half, pass, memory);
+    const MaskShare seen = mask_share_of(cell, 0, half, pass, memory);
     CHECK(double(seen.share) == doctest::Approx(0.5).epsilon(0.02));
     CHECK(seen.variance > 0);
     share += double(seen.share) / passes;

@@ -13,7 +13,7 @@ namespace {
 // luminance b err by b n^(-q / 2), and samples are distributed so that all miss their allowed error
 // by the same factor.
 double variance_for(const std::vector<double>& luminances, double q, double samples,
-                    const AllowedOfBright& of_bright) {
+                    const BrightPixelError& of_bright) {
   double wanted = 0, allowed2 = 0;
   for (const double b : luminances) {
     const double allowed = allowed_error(0.01, b, 1, of_bright);

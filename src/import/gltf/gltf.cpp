@@ -62,7 +62,8 @@ class Importer {
     for (Affine& world : nodes_.world) world.translation -= scene_.origin;
     check_size();
     for (const GltfNode& node : nodes_.shown) add_node(node);
-    or_left_out("an image-based light", "", [&] { add_gltf_image_light(root_, buffers_, scene_); });
+    warn_and_skip_on_error("an image-based light", "",
+                           [&] { add_gltf_image_light(root_, buffers_, scene_); });
     materials_.check_unused_images();
     baked_.finish();
     if (scene_.meshes.empty() && scene_.instances.empty())
@@ -141,7 +142,7 @@ class Importer {
   // Runs `add` for one light or camera. If that throws InputError, leaves the light or camera out
   // and adds a warning that names it.
   template <class Add>
-  void or_left_out(const char* kind, const std::string& name, const Add& add) {
+  void warn_and_skip_on_error(const char* kind, const std::string& name, const Add& add) {
     try {
       add();
     } catch (const InputError& e) {
@@ -153,14 +154,14 @@ class Importer {
   void add_node(const GltfNode& node) {
     const JsonNode json = node_json(node);
     const std::string own_name = json.string_or("name", "");
-    or_left_out("camera", own_name, [&] {
+    warn_and_skip_on_error("camera", own_name, [&] {
       if (const auto camera = json.find("camera")) add_camera(json, *camera, node.world_from_node);
     });
-    or_left_out("light", own_name, [&] {
+    warn_and_skip_on_error("light", own_name, [&] {
       if (const auto light = json.extension(lights_extension))
         add_light(json, light->member("light"), node.world_from_node);
     });
-    or_left_out("light", own_name, [&] {
+    warn_and_skip_on_error("light", own_name, [&] {
       if (const auto instance = json.extension("EXT_lights_ies"))
         add_gltf_ies_light(root_, *instance, node.world_from_node, own_name, buffers_, scene_);
     });
@@ -220,13 +221,14 @@ class Importer {
     mesh.material = material.material;
     painter_.paint(mesh, colors, material.is_textured, material.is_blended);
     const bool is_empty = mesh.triangles.empty();
-    const auto tell_missing = [&](int set) {
+    const auto warn_of_missing_set = [&](int set) {
       scene_.warnings.add("textured meshes without TEXCOORD_" + std::to_string(set) +
                           " show one texel only");
     };
-    if (material.is_textured && mesh.uvs.empty() && !is_empty) tell_missing(material.uv_sets.first);
+    if (material.is_textured && mesh.uvs.empty() && !is_empty)
+      warn_of_missing_set(material.uv_sets.first);
     if (material.uv_sets.second >= 0 && mesh.uvs_2.empty() && !is_empty)
-      tell_missing(material.uv_sets.second);
+      warn_of_missing_set(material.uv_sets.second);
     return mesh;
   }
 

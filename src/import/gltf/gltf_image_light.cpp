@@ -133,8 +133,8 @@ void add_gltf_image_light(const JsonNode& root, const GltfBuffers& buffers, Scen
   e.radiance = Rgb{float(intensity)};
   e.axes = axes_of(*light);
   e.environment = int32_t(scene.environments.size());
-  if (scene.left_out_image_bytes) {
-    *scene.left_out_image_bytes += 6;  // only needs to be positive
+  if (scene.skipped_image_bytes) {
+    *scene.skipped_image_bytes += 6;  // only needs to be positive
     return;
   }
   std::array<Face, 6> cube;

@@ -120,7 +120,7 @@ bool MeshInstancer::place(const Key& key, size_t triangles, const Affine& world_
   return true;
 }
 
-void settle_instances(Scene& scene) {
+void finalize_instances(Scene& scene) {
   std::vector<uint32_t> uses(scene.instanced_meshes.size(), 0);
   for (const Instance& i : scene.instances) ++uses[i.mesh];
   std::erase_if(scene.instances, [&](const Instance& i) {

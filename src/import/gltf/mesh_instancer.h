@@ -1,6 +1,7 @@
 // Instancing of meshes that a file places many times: a mesh is stored once if that saves memory
 // without slowing rays. Importers (glTF, pbrt, Mitsuba) offer each placement to
-// MeshInstancer::place and copy the mesh if it declines. docs/reference/formats.md#instances lists the rules.
+// MeshInstancer::place and copy the mesh if it declines. docs/reference/formats.md#instances lists
+// the rules.
 #pragma once
 
 #include <compare>
@@ -67,6 +68,6 @@ class MeshInstancer {
 };
 
 // Turns meshes with a single instance into plain meshes, and removes meshes without instances.
-void settle_instances(Scene& scene);
+void finalize_instances(Scene& scene);
 
 }  // namespace troffer

@@ -9,13 +9,13 @@ namespace troffer {
 
 namespace {
 
-constexpr double told_shift = 0.1;  // degrees; smaller shifts are rounding
-constexpr double most_gap = 5;      // degrees; a common step of photometric tables
-constexpr double least_gap = 1e-3;  // degrees; closer angles are equal in single precision
+constexpr double reported_shift_deg = 0.1;  // degrees; smaller shifts are rounding
+constexpr double max_gap_deg = 5;           // degrees; a common step of photometric tables
+constexpr double min_gap_deg = 1e-3;        // degrees; closer angles are equal in single precision
 // Largest gap in steps: tables that list the middles of zones begin half a step from the pole. The
 // excess is for rounding.
 constexpr double zone_gap = 0.505;
-constexpr double told_share = 0.01;  // of the largest intensity; a darker edge needs no warning
+constexpr double lit_share = 0.01;  // of the largest intensity; a darker edge needs no warning
 
 double snapped(double angle, double neighbour) {
   const double nearest = 90 * std::round(angle / 90), off = std::abs(angle - nearest);
@@ -24,42 +24,42 @@ double snapped(double angle, double neighbour) {
 }
 
 void prepend_height(Planes& planes, double height) {
-  const size_t n = planes.heights_deg.size();
+  const size_t n = planes.vertical_angles_deg.size();
   std::vector<double> candela;
-  for (size_t i = 0; i < planes.turns_deg.size(); ++i) {
+  for (size_t i = 0; i < planes.horizontal_angles_deg.size(); ++i) {
     candela.push_back(planes.candela[i * n]);
     candela.insert(candela.end(), planes.candela.begin() + std::ptrdiff_t(i * n),
                    planes.candela.begin() + std::ptrdiff_t((i + 1) * n));
   }
-  planes.heights_deg.insert(planes.heights_deg.begin(), height);
+  planes.vertical_angles_deg.insert(planes.vertical_angles_deg.begin(), height);
   planes.candela = std::move(candela);
 }
 
 void append_height(Planes& planes, double height) {
-  const size_t n = planes.heights_deg.size();
+  const size_t n = planes.vertical_angles_deg.size();
   std::vector<double> candela;
-  for (size_t i = 0; i < planes.turns_deg.size(); ++i) {
+  for (size_t i = 0; i < planes.horizontal_angles_deg.size(); ++i) {
     candela.insert(candela.end(), planes.candela.begin() + std::ptrdiff_t(i * n),
                    planes.candela.begin() + std::ptrdiff_t((i + 1) * n));
     candela.push_back(planes.candela[(i + 1) * n - 1]);
   }
-  planes.heights_deg.push_back(height);
+  planes.vertical_angles_deg.push_back(height);
   planes.candela = std::move(candela);
 }
 
-// True if any plane exceeds told_share of the largest intensity at that vertical angle.
+// True if any plane exceeds lit_share of the largest intensity at that vertical angle.
 bool is_lit_at(const Planes& planes, size_t height) {
   const double most = *std::max_element(planes.candela.begin(), planes.candela.end());
-  const size_t n = planes.heights_deg.size();
-  for (size_t i = 0; i < planes.turns_deg.size(); ++i)
-    if (planes.candela[i * n + height] > told_share * most) return true;
+  const size_t n = planes.vertical_angles_deg.size();
+  for (size_t i = 0; i < planes.horizontal_angles_deg.size(); ++i)
+    if (planes.candela[i * n + height] > lit_share * most) return true;
   return false;
 }
 
 // True if the angles begin above 0, but close enough to be extended to 0.
 bool is_near_zero(const std::vector<double>& angles) {
   const double first = angles.front(), step = angles.size() > 1 ? angles[1] - first : 0;
-  return first > least_gap && first <= std::max(most_gap, zone_gap * step);
+  return first > min_gap_deg && first <= std::max(max_gap_deg, zone_gap * step);
 }
 
 }  // namespace
@@ -71,18 +71,18 @@ void snap_ends(std::vector<double>& angles, const char* what, const std::string&
   const double first = snapped(angles[0], angles[1]);
   const double last = snapped(angles[n - 1], angles[n - 2]);
   for (const auto& [from, to] : {std::pair{angles[0], first}, {angles[n - 1], last}})
-    if (std::abs(from - to) > told_shift)
+    if (std::abs(from - to) > reported_shift_deg)
       warnings.add(fmt::format("{}: {} of {:.6g} degrees count as {:.6g}", name, what, from, to));
   angles[0] = first;
   angles[n - 1] = last;
 }
 
-void reach_poles(Planes& planes, const std::string& name, WarningLog& warnings) {
-  const std::vector<double>& heights = planes.heights_deg;
+void extend_to_poles(Planes& planes, const std::string& name, WarningLog& warnings) {
+  const std::vector<double>& heights = planes.vertical_angles_deg;
   const double first = heights.front(), from = first < 90 ? 0 : 90;
   const double step = heights[1] - first;
-  if (first - from > least_gap) {
-    if (first - from <= std::max(most_gap, zone_gap * step)) {
+  if (first - from > min_gap_deg) {
+    if (first - from <= std::max(max_gap_deg, zone_gap * step)) {
       warnings.add(fmt::format(
           "{}: vertical angles begin at {:.6g} degrees; the first intensities go on to {:.6g}",
           name, first, from));
@@ -93,7 +93,7 @@ void reach_poles(Planes& planes, const std::string& name, WarningLog& warnings) 
     }
   }
   const double last = heights.back(), to = last <= 90 ? 90 : 180;
-  if (!(to - last > least_gap)) return;
+  if (!(to - last > min_gap_deg)) return;
   if (to - last <= zone_gap * (last - heights[heights.size() - 2])) {
     warnings.add(fmt::format(
         "{}: vertical angles end at {:.6g} degrees; the last intensities go on to {:.6g}", name,
@@ -105,22 +105,22 @@ void reach_poles(Planes& planes, const std::string& name, WarningLog& warnings) 
   }
 }
 
-void reach_beam(Planes& planes, const std::string& name, WarningLog& warnings) {
+void extend_to_beam_axis(Planes& planes, const std::string& name, WarningLog& warnings) {
   const auto tell = [&](const char* what, double first) {
     warnings.add(
         fmt::format("{}: {} angles begin at {:.6g} degrees; the first intensities go on to 0", name,
                     what, first));
   };
-  if (is_near_zero(planes.heights_deg)) {
-    tell("vertical", planes.heights_deg.front());
+  if (is_near_zero(planes.vertical_angles_deg)) {
+    tell("vertical", planes.vertical_angles_deg.front());
     prepend_height(planes, 0);
   }
-  if (planes.turns_deg.size() > 1 && is_near_zero(planes.turns_deg)) {
-    tell("horizontal", planes.turns_deg.front());
-    const size_t n = planes.heights_deg.size();
+  if (planes.horizontal_angles_deg.size() > 1 && is_near_zero(planes.horizontal_angles_deg)) {
+    tell("horizontal", planes.horizontal_angles_deg.front());
+    const size_t n = planes.vertical_angles_deg.size();
     const std::vector<double> row(planes.candela.begin(),
                                   planes.candela.begin() + std::ptrdiff_t(n));
-    planes.turns_deg.insert(planes.turns_deg.begin(), 0);
+    planes.horizontal_angles_deg.insert(planes.horizontal_angles_deg.begin(), 0);
     planes.candela.insert(planes.candela.begin(), row.begin(), row.end());
   }
 }

@@ -25,10 +25,10 @@ void snap_ends(std::vector<double>& angles, const char* what, const std::string&
 // within 5 degrees, or half a step, of a pole continues there with its first value. One that ends
 // within half a step of a pole continues with its last value.
 // Larger gaps stay dark. Warns of extensions, and of gaps next to light.
-void reach_poles(Planes& planes, const std::string& name, WarningLog& warnings);
+void extend_to_poles(Planes& planes, const std::string& name, WarningLog& warnings);
 
 // Extends ascending angles of types A and B to 0 if they begin within 5 degrees, or half a step,
 // above 0. Such tables describe both sides of the beam.
-void reach_beam(Planes& planes, const std::string& name, WarningLog& warnings);
+void extend_to_beam_axis(Planes& planes, const std::string& name, WarningLog& warnings);
 
 }  // namespace troffer

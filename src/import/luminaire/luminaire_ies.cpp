@@ -165,7 +165,7 @@ Header read_header(PhotometricText& text, Luminaire& l, int edition, const std::
 }
 
 // Warns if numbers follow the intensities: some count in the header is wrong.
-void warn_of_more(PhotometricText& text, const std::string& path, WarningLog& warnings) {
+void warn_of_extra_numbers(PhotometricText& text, const std::string& path, WarningLog& warnings) {
   std::string_view line;
   while (text.next_line(line))
     if (!line.empty() && line.find_first_not_of("0123456789.,+-eE \t") == std::string_view::npos) {
@@ -175,15 +175,18 @@ void warn_of_more(PhotometricText& text, const std::string& path, WarningLog& wa
 }
 
 // Reverses descending angles and their intensities, with a warning.
-void make_ascend(Planes& planes, const std::string& path, WarningLog& warnings) {
-  const size_t n = planes.heights_deg.size(), rows = planes.turns_deg.size();
+void reverse_descending_angles(Planes& planes, const std::string& path, WarningLog& warnings) {
+  const size_t n = planes.vertical_angles_deg.size(), rows = planes.horizontal_angles_deg.size();
   const auto descends = [](const std::vector<double>& v) {
     return v.size() > 1 && std::is_sorted(v.rbegin(), v.rend()) && v.front() > v.back();
   };
-  const bool do_heights = descends(planes.heights_deg), do_turns = descends(planes.turns_deg);
+  const bool do_heights = descends(planes.vertical_angles_deg),
+             do_turns = descends(planes.horizontal_angles_deg);
   if (!do_heights && !do_turns) return;
-  if (do_heights) std::reverse(planes.heights_deg.begin(), planes.heights_deg.end());
-  if (do_turns) std::reverse(planes.turns_deg.begin(), planes.turns_deg.end());
+  if (do_heights)
+    std::reverse(planes.vertical_angles_deg.begin(), planes.vertical_angles_deg.end());
+  if (do_turns)
+    std::reverse(planes.horizontal_angles_deg.begin(), planes.horizontal_angles_deg.end());
   if (planes.candela.size() == n * rows) {
     std::vector<double> turned(planes.candela.size());
     for (size_t i = 0; i < rows; ++i)
@@ -215,13 +218,13 @@ Planes read_planes(PhotometricText& text, const Header& h, const std::string& pa
   const bool is_round = h.type == 1;  // type C (1); types B (2) and A (3) are beams
   const double most_turn = is_round ? 360 : 90;
   Planes planes;
-  planes.heights_deg = read_angles(text, h.heights, "vertical", is_round ? 0 : -90,
-                                   is_round ? 180 : 90, path, warnings);
-  planes.turns_deg = read_angles(text, h.turns, "horizontal", -std::min(most_turn, 180.0),
-                                 most_turn, path, warnings);
+  planes.vertical_angles_deg = read_angles(text, h.heights, "vertical", is_round ? 0 : -90,
+                                           is_round ? 180 : 90, path, warnings);
+  planes.horizontal_angles_deg = read_angles(
+      text, h.turns, "horizontal", -std::min(most_turn, 180.0), most_turn, path, warnings);
   for (size_t i = 0; i < h.heights * h.turns; ++i)
     planes.candela.push_back(h.factor * text.number("intensity", -most_candela, most_candela));
-  make_ascend(planes, path, warnings);
+  reverse_descending_angles(planes, path, warnings);
   return planes;
 }
 
@@ -240,11 +243,11 @@ Luminaire read_text(const std::string& path, PhotometricText& text, const std::s
   Planes planes = read_planes(text, h, path, warnings);
   if (h.has_zero_factor) warnings.add(path + ": factors of 0 count as 1");
   clean_intensities(planes, text, path, warnings);
-  warn_of_more(text, path, warnings);
+  warn_of_extra_numbers(text, path, warnings);
   if (h.type == 1)
-    reach_poles(planes, path, warnings);
+    extend_to_poles(planes, path, warnings);
   else
-    reach_beam(planes, path, warnings);
+    extend_to_beam_axis(planes, path, warnings);
   l.web = h.type == 1
               ? unfold_planes(planes, path, warnings)
               : unfold_beam(planes, h.type == 2 ? WebPole::right : WebPole::up, path, warnings);

@@ -47,14 +47,14 @@ Planes read_angles(PhotometricText& text, int symmetry, size_t turn_count, size_
   for (size_t i = 0; i < turn_count; ++i)
     turns.push_back(text.number_of_line("C angle", -angle_slack_deg, 360 + angle_slack_deg));
   for (size_t i = 0; i < heights; ++i)
-    planes.heights_deg.push_back(
+    planes.vertical_angles_deg.push_back(
         text.number_of_line("gamma angle", -angle_slack_deg, 180 + angle_slack_deg));
-  check_ascending(planes.heights_deg, text, "gamma angles");
-  snap_ends(planes.heights_deg, "gamma angles", path, warnings);
-  if (planes.heights_deg.front() < 0 || planes.heights_deg.back() > 180)
+  check_ascending(planes.vertical_angles_deg, text, "gamma angles");
+  snap_ends(planes.vertical_angles_deg, "gamma angles", path, warnings);
+  if (planes.vertical_angles_deg.front() < 0 || planes.vertical_angles_deg.back() > 180)
     text.fail("gamma angles lie between 0 and 180");
-  planes.turns_deg = planes_present(symmetry, turns, text);
-  snap_ends(planes.turns_deg, "C-planes", path, warnings);
+  planes.horizontal_angles_deg = planes_present(symmetry, turns, text);
+  snap_ends(planes.horizontal_angles_deg, "C-planes", path, warnings);
   return planes;
 }
 
@@ -102,11 +102,11 @@ Luminaire read_ldt(const std::string& path, std::string_view bytes, WarningLog& 
   Planes planes = read_angles(text, symmetry, turn_count, heights, path, warnings);
   if (!(l.lamp_lumens > 0)) text.fail("no lumens are stated, by which intensities per 1000 count");
   const double factor = l.lamp_lumens / 1000 * (conversion > 0 ? conversion : 1);
-  for (size_t i = 0; i < heights * planes.turns_deg.size(); ++i)
+  for (size_t i = 0; i < heights * planes.horizontal_angles_deg.size(); ++i)
     planes.candela.push_back(factor *
                              text.number_of_line("intensity", -most_candela, most_candela));
   clean_intensities(planes, text, path, warnings);
-  reach_poles(planes, path, warnings);
+  extend_to_poles(planes, path, warnings);
   l.web = unfold_planes(planes, path, warnings);
   return l;
 }

@@ -31,7 +31,7 @@ class Unfolder {
       : planes_(planes), warnings_(warnings), name_(name) {}
 
   LightWeb web() {
-    const std::vector<double>& turns = planes_.turns_deg;
+    const std::vector<double>& turns = planes_.horizontal_angles_deg;
     const double first = turns.front(), last = turns.back();
     if (turns.size() == 1) {
       add(0, 0);
@@ -65,8 +65,8 @@ class Unfolder {
   };
   void add(double turn, size_t row) { made_.push_back({turn, row}); }
   void add_all(double offset, double sign) {
-    for (size_t i = 0; i < planes_.turns_deg.size(); ++i)
-      add(offset + sign * planes_.turns_deg[i], i);
+    for (size_t i = 0; i < planes_.horizontal_angles_deg.size(); ++i)
+      add(offset + sign * planes_.horizontal_angles_deg[i], i);
   }
 
   LightWeb sorted() {
@@ -79,7 +79,7 @@ class Unfolder {
                               return std::abs(a.turn - b.turn) < 1e-6;
                             }),
                 made_.end());
-    const size_t n = planes_.heights_deg.size();
+    const size_t n = planes_.vertical_angles_deg.size();
     std::vector<double> turns;
     std::vector<const double*> rows;
     for (const Plane& p : made_) {
@@ -88,18 +88,19 @@ class Unfolder {
     }
     LightWeb web;
     web.name = name_;
-    for (const double h : planes_.heights_deg) web.heights_rad.push_back(float(rad_from_deg(h)));
+    for (const double h : planes_.vertical_angles_deg)
+      web.vertical_angles_rad.push_back(float(rad_from_deg(h)));
     // The web's seam is at 0. If no plane lies there, interpolate between the neighbours.
     const double gap = turns.front() + 360 - turns.back();
     const double share = turns.front() > 0 ? (360 - turns.back()) / gap : 1;
     const auto add_row = [&](double turn, const double* a, const double* b, double t) {
-      web.turns_rad.push_back(float(rad_from_deg(turn)));
+      web.horizontal_angles_rad.push_back(float(rad_from_deg(turn)));
       for (size_t j = 0; j < n; ++j) web.intensities.push_back(float(a[j] + (b[j] - a[j]) * t));
     };
     if (turns.front() > 0) add_row(0, rows.back(), rows.front(), share);
     for (size_t i = 0; i < turns.size(); ++i) add_row(turns[i], rows[i], rows[i], 0);
     add_row(360, rows.back(), rows.front(), share);
-    web.turns_rad.back() = 2 * pi_f;
+    web.horizontal_angles_rad.back() = 2 * pi_f;
     return web;
   }
 
@@ -141,7 +142,7 @@ Mirrored mirrored(const std::vector<double>& angles) {
 // the plane has two.
 LightWeb round_beam(const Planes& planes, const std::string& name) {
   std::vector<double> heights, candela;
-  const std::vector<double>& v = planes.heights_deg;
+  const std::vector<double>& v = planes.vertical_angles_deg;
   const auto value_at = [&](double angle) {  // linear; -1 outside the table
     const auto above = std::lower_bound(v.begin(), v.end(), angle - 1e-9);
     if (above == v.end() || (above == v.begin() && *above > angle + 1e-9)) return -1.0;
@@ -160,8 +161,8 @@ LightWeb round_beam(const Planes& planes, const std::string& name) {
   }
   LightWeb web;
   web.name = name;
-  for (const double h : heights) web.heights_rad.push_back(float(rad_from_deg(h)));
-  web.turns_rad = {0, 2 * pi_f};
+  for (const double h : heights) web.vertical_angles_rad.push_back(float(rad_from_deg(h)));
+  web.horizontal_angles_rad = {0, 2 * pi_f};
   for (int turn = 0; turn < 2; ++turn)
     for (const double c : candela) web.intensities.push_back(float(c));
   return web;
@@ -171,21 +172,22 @@ LightWeb round_beam(const Planes& planes, const std::string& name) {
 
 LightWeb unfold_beam(const Planes& planes, WebPole pole, const std::string& name,
                      WarningLog& warnings) {
-  if (planes.turns_deg.size() == 1) return round_beam(planes, name);
-  if (planes.heights_deg.front() == 0)
+  if (planes.horizontal_angles_deg.size() == 1) return round_beam(planes, name);
+  if (planes.vertical_angles_deg.front() == 0)
     warnings.add(name + ": vertical angles begin at 0; what lies below the beam mirrors it");
-  const Mirrored v = mirrored(planes.heights_deg), h = mirrored(planes.turns_deg);
+  const Mirrored v = mirrored(planes.vertical_angles_deg),
+                 h = mirrored(planes.horizontal_angles_deg);
   // One of the two tables runs to the pole, the other around it.
   const bool is_up = pole == WebPole::up;
   const Mirrored &to_pole = is_up ? v : h, &round = is_up ? h : v;
-  const size_t n = planes.heights_deg.size();
+  const size_t n = planes.vertical_angles_deg.size();
   LightWeb web;
   web.name = name;
   web.pole = pole;
   for (auto a = to_pole.angles.rbegin(); a != to_pole.angles.rend(); ++a)
-    web.heights_rad.push_back(float(rad_from_deg(90 - *a)));
+    web.vertical_angles_rad.push_back(float(rad_from_deg(90 - *a)));
   for (size_t i = 0; i < round.angles.size(); ++i) {
-    web.turns_rad.push_back(float(rad_from_deg(round.angles[i])));
+    web.horizontal_angles_rad.push_back(float(rad_from_deg(round.angles[i])));
     for (auto from = to_pole.from.rbegin(); from != to_pole.from.rend(); ++from) {
       const size_t turn = is_up ? round.from[i] : *from, height = is_up ? *from : round.from[i];
       web.intensities.push_back(float(planes.candela[turn * n + height]));

@@ -15,7 +15,7 @@ namespace troffer {
 // Measured planes as in the file. Type C: heights are gamma angles, turns are C angles. Types A and
 // B: heights are vertical angles, turns are horizontal angles from -90 to 90.
 struct Planes {
-  std::vector<double> heights_deg, turns_deg;
+  std::vector<double> vertical_angles_deg, horizontal_angles_deg;
   std::vector<double> candela;  // turns × heights, a plane after the other
 };
 

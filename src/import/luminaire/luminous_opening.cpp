@@ -164,17 +164,19 @@ bool shines_towards(const LightWeb& web, const Vec3d& normal) {
   const Vec3 own{dot(n, axes[0]), dot(n, axes[1]), dot(n, axes[2])};
   const float least =
       least_share * *std::max_element(web.intensities.begin(), web.intensities.end());
-  const size_t heights = web.heights_rad.size();
+  const size_t heights = web.vertical_angles_rad.size();
   // Test each plane and the interpolated directions up to the next plane, which may be 360° away.
   constexpr int parts = 36;
-  for (size_t i = 0; i + 1 < web.turns_rad.size(); ++i)
+  for (size_t i = 0; i + 1 < web.horizontal_angles_rad.size(); ++i)
     for (size_t j = 0; j < heights; ++j) {
       const float here = web.intensities[i * heights + j],
                   next = web.intensities[(i + 1) * heights + j];
-      const float z = std::cos(web.heights_rad[j]), r = std::sin(web.heights_rad[j]);
+      const float z = std::cos(web.vertical_angles_rad[j]),
+                  r = std::sin(web.vertical_angles_rad[j]);
       for (int part = 0; part <= parts && std::max(here, next) > least; ++part) {
         const float t = float(part) / float(parts);
-        const float turn = std::lerp(web.turns_rad[i], web.turns_rad[i + 1], t);
+        const float turn =
+            std::lerp(web.horizontal_angles_rad[i], web.horizontal_angles_rad[i + 1], t);
         const Vec3 w{r * std::cos(turn), r * std::sin(turn), z};
         if (std::lerp(here, next, t) > least && dot(own, w) > 1e-4f) return true;
       }

@@ -158,7 +158,7 @@ class MtlReader {
   bool read_value(std::string_view keyword, MtlMaterial& m);
   bool read_share(std::string_view keyword, MtlMaterial& m);
   bool read_image(std::string_view keyword, MtlMaterial& m);
-  void mend_opacity(const std::vector<std::string>& names);
+  void fix_inverted_opacity(const std::vector<std::string>& names);
 };
 
 bool MtlReader::read_value(std::string_view keyword, MtlMaterial& m) {
@@ -226,7 +226,7 @@ bool MtlReader::read_image(std::string_view keyword, MtlMaterial& m) {
 
 // Sets d 0 to opaque if most materials, or ones with an image, have it: some programs invert d, and
 // everything would be invisible.
-void MtlReader::mend_opacity(const std::vector<std::string>& names) {
+void MtlReader::fix_inverted_opacity(const std::vector<std::string>& names) {
   const auto is_unseen = [&](const std::string& name) { return library_[name].opacity == 0; };
   const auto unseen = std::count_if(names.begin(), names.end(), is_unseen);
   const bool are_most = 2 * unseen > std::ptrdiff_t(names.size()) && names.size() > 1;
@@ -262,7 +262,7 @@ void MtlReader::read() {
     else if (!read_value(keyword, *current) && !read_image(keyword, *current))
       warnings_.add("MTL: '" + std::string(keyword.substr(0, 40)) + "' is not supported: ignored");
   }
-  mend_opacity(names);
+  fix_inverted_opacity(names);
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "import/anisotropic_roughness.h"
 #include "import/mesh/mtl_image.h"
-#include "import/two_widths.h"
 
 namespace troffer {
 
@@ -64,10 +64,10 @@ bool is_gloss_by_color(const MtlMaterial& mtl, const Material& m) {
 
 void set_anisotropy(const MtlMaterial& mtl, Material& m) {
   if (!(mtl.anisotropy > 0)) return;
-  // The square root of Burley's aspect, because set_two_widths takes roughness, the square root of
-  // a width.
+  // The square root of Burley's aspect, because set_anisotropic_roughness takes roughness, the
+  // square root of a width.
   const float aspect = std::pow(1 - 0.9f * mtl.anisotropy, 0.25f);
-  set_two_widths(m, m.roughness.value / aspect, m.roughness.value * aspect);
+  set_anisotropic_roughness(m, m.roughness.value / aspect, m.roughness.value * aspect);
   m.anisotropy_rotation_rad += 2 * pi_f * mtl.turn;
 }
 

@@ -65,7 +65,7 @@ class ObjReader {
     size_t points_and_lines = 0, short_faces = 0, dangling = 0;
   } left_out_;
   struct Materials {
-    explicit Materials(Scene& scene) : loader(scene), painter(scene) { loader.obey_own_colours(); }
+    explicit Materials(Scene& scene) : loader(scene), painter(scene) { loader.convert_to_srgb(); }
     TextureLoader loader;
     VertexPainter painter;
     MtlLibrary library;

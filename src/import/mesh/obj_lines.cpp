@@ -129,7 +129,7 @@ int ObjLineReader::read_index(size_t ObjCounts::*kind, const char* what) {
     const size_t count = before_->*kind + counts_now().*kind;
     uint32_t found = 0;
     const bool may_dangle = kind != &ObjCounts::positions && count == 0;
-    if (!may_dangle && !find_obj_index(index, count, found))
+    if (!may_dangle && !resolve_obj_index(index, count, found))
       lines_.fail(std::string("index ") + std::to_string(index) + " of a " + what +
                   " is out of range (" + std::to_string(count) + " so far)");
   }

@@ -28,7 +28,7 @@ void ObjPiece::clear() {
   points_and_lines = short_faces = dangling = 0;
 }
 
-bool find_obj_index(int written, size_t count, uint32_t& index) {
+bool resolve_obj_index(int written, size_t count, uint32_t& index) {
   const int64_t i = written < 0 ? int64_t(count) + written : int64_t(written) - 1;
   index = uint32_t(i);
   return written != 0 && i >= 0 && i < int64_t(count);
@@ -73,7 +73,7 @@ class ObjFacePlacer {
   // those are counted and ignored.
   bool find_optional(int written, size_t count, uint32_t& index) {
     if (written == ObjWrittenCorner::not_given) return true;
-    if (count > 0) return find_obj_index(written, count, index);
+    if (count > 0) return resolve_obj_index(written, count, index);
     ++piece_.dangling;
     return true;
   }
@@ -81,7 +81,7 @@ class ObjFacePlacer {
   bool place_face(const ObjWrittenCorner* written, uint32_t size) {
     face_.assign(size, {});
     for (uint32_t i = 0; i < size; ++i)
-      if (!find_obj_index(written[i].position, counts_.positions, face_[i].position) ||
+      if (!resolve_obj_index(written[i].position, counts_.positions, face_[i].position) ||
           !find_optional(written[i].uv, counts_.uvs, face_[i].uv) ||
           !find_optional(written[i].normal, counts_.normals, face_[i].normal))
         return false;

@@ -72,7 +72,7 @@ struct ObjPiece {
 
 // Sets `index` to the position, from 0, of a written index among `count` items. Returns false if it
 // is out of range.
-bool find_obj_index(int written, size_t count, uint32_t& index);
+bool resolve_obj_index(int written, size_t count, uint32_t& index);
 
 // Triangulates the faces of a piece that follows `before`. `positions` holds all positions of the
 // file up to the end of the piece, relative to Scene::origin. Returns false if an index is out of

@@ -123,7 +123,7 @@ std::optional<std::vector<PlyPiece>> PlyReader::cut(const PlyElement& element) {
 void PlyReader::go_past(const std::vector<PlyPiece>& pieces) {
   int lines = 0;
   for (const PlyPiece& p : pieces) lines += p.lines;
-  if (!pieces.empty()) body_.go_behind_scalar(pieces.back().end, lines);
+  if (!pieces.empty()) body_.go_past_last_scalar(pieces.back().end, lines);
 }
 
 void PlyReader::skip_element(const PlyElement& element) {

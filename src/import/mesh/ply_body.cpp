@@ -54,7 +54,7 @@ void PlyBody::skip_blanks() {
   }
 }
 
-void PlyBody::go_behind_scalar(size_t end, int lines) {
+void PlyBody::go_past_last_scalar(size_t end, int lines) {
   while (is_ascii() && end > at_ && is_blank(text_[end - 1])) {
     --end;
     if (text_[end] == '\n') --lines;

@@ -31,7 +31,7 @@ class PlyBody {
     line_ += lines;
   }
   // Moves to just after the last scalar before byte `end`. There are `lines` line ends up to `end`.
-  void go_behind_scalar(size_t end, int lines);
+  void go_past_last_scalar(size_t end, int lines);
   // Reads the length of a list. Throws InputError if it is negative or the text is too short for
   // it.
   size_t list_length(const PlyProperty& property);

@@ -21,7 +21,7 @@ Scene import_ply(const std::string& path, const TellProgress& progress) {
     parallel_pieces(mesh.positions.size(), size_t(1) << 16, [&](size_t first, size_t end) {
       for (size_t i = first; i < end; ++i) mesh.positions[i] = Vec3(placed(uint32_t(i)));
     });
-    show_alone(std::move(mesh), scene);
+    add_only_mesh(std::move(mesh), scene);
   });
 }
 

@@ -145,7 +145,7 @@ Scene import_stl(const std::string& path, const PieceReading& how) {
     scene.file = path;
     const FileBytes bytes(path, default_max_file_bytes, how.progress);
     const StlCorners corners(path, bytes.view(), how);
-    show_alone(mesh_of(corners, scene.origin, how.progress, bounds), scene);
+    add_only_mesh(mesh_of(corners, scene.origin, how.progress, bounds), scene);
   });
 }
 

@@ -67,7 +67,7 @@ class MitsubaReader {
   Attached attached_to(const MitsubaNode& node);
   Rgb absorption_of(const MitsubaNode& medium);
   std::optional<EmissionSpec> emission_of(const MitsubaNode& shape, const MitsubaNode& emitter);
-  void place(const MitsubaShape& shape, const Affine& world, const PlacedLook& look);
+  void place(const MitsubaShape& shape, const Affine& world, const ShapeAttributes& look);
 };
 
 void MitsubaReader::read() {
@@ -241,7 +241,7 @@ std::optional<uint32_t> MitsubaReader::material_of(const Attached& with, bool is
     material = bsdfs_.index_of(*with.bsdf);
   else if (is_emitting || !with.has_medium || !tree_.is_legacy())
     material = bsdfs_.default_index(is_emitting);
-  if (!material && is_emitting) material = bsdfs_.nothing_index();
+  if (!material && is_emitting) material = bsdfs_.invisible_index();
   if (!material || with.absorption.is_black()) return material;
   if (scene_.materials[*material].kind == MaterialKind::dielectric)
     return bsdfs_.with_medium(*material, with.absorption);
@@ -256,7 +256,7 @@ void MitsubaReader::add_part(const MitsubaNode& node, const Affine& world, bool 
   if (is_instance && in_groups_.contains(key)) shape = in_groups_[key];
   if (!shape) shape = std::make_shared<const std::optional<MitsubaShape>>(shapes_.read(node, part));
   if (is_instance) in_groups_[key] = shape;
-  PlacedLook look;
+  ShapeAttributes look;
   look.place = node.place;
   MitsubaAttributes* attributes = *shape ? attributes_of(node, **shape, with) : nullptr;
   textures_.set_attributes(attributes);
@@ -303,7 +303,8 @@ MitsubaAttributes* MitsubaReader::attributes_of(const MitsubaNode& node, const M
   return a.get();
 }
 
-void MitsubaReader::place(const MitsubaShape& shape, const Affine& world, const PlacedLook& look) {
+void MitsubaReader::place(const MitsubaShape& shape, const Affine& world,
+                          const ShapeAttributes& look) {
   if (shape.kind == MitsubaShapeKind::sphere) {
     placer_.add_sphere(world, shape.centre, shape.radius, shape.is_turned, look);
   } else if (shape.kind == MitsubaShapeKind::disk) {

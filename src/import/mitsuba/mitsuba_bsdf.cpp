@@ -5,9 +5,9 @@
 
 #include "base/coat.h"
 #include "base/facets.h"
+#include "import/anisotropic_roughness.h"
 #include "import/measured_bsdf.h"
 #include "import/mitsuba/mitsuba_values.h"
-#include "import/two_widths.h"
 
 namespace troffer {
 
@@ -49,7 +49,7 @@ uint32_t MitsubaBsdfs::default_index(bool is_emitting) {
   return *index;
 }
 
-uint32_t MitsubaBsdfs::nothing_index() {
+uint32_t MitsubaBsdfs::invisible_index() {
   if (!nothing_) {
     Material m;
     m.name = "null";
@@ -97,7 +97,7 @@ void MitsubaBsdfs::read_alpha(const MitsubaNode& node, Material& m) {
     const FloatInput u = textures_.real(node, {"alpha_u"}, default_alpha);
     const FloatInput v = textures_.real(node, {"alpha_v"}, default_alpha);
     const bool is_metal = m.kind == MaterialKind::conductor;
-    if (!is_metal || !set_two_widths(scene_, m, u, v)) {
+    if (!is_metal || !set_anisotropic_roughness(scene_, m, u, v)) {
       m.roughness = u;
       m.roughness.value = std::sqrt(u.value * v.value);
       if (u.value != v.value || u.texture != v.texture)

@@ -29,7 +29,7 @@ class MitsubaBsdfs {
   // Returns the material of shapes without bsdf: grey, or black if they emit.
   uint32_t default_index(bool is_emitting);
   // Returns the material of emitting shapes that are otherwise invisible: a pane of index 1.
-  uint32_t nothing_index();
+  uint32_t invisible_index();
 
  private:
   Scene& scene_;

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "import/anisotropic_roughness.h"
 #include "import/mitsuba/mitsuba_bsdf.h"
 #include "import/mitsuba/mitsuba_values.h"
-#include "import/two_widths.h"
 
 namespace troffer {
 
@@ -34,7 +34,7 @@ bool is_nothing(const MitsubaNode& parameter) {
 }
 
 // Share of uniform diffuse light that is not absorbed on its way into the coat and out again.
-float kept_evenly(float exponent, float index) {
+float diffuse_transmittance(float exponent, float index) {
   constexpr int steps = 64;
   double sum = 0;
   for (int i = 0; i < steps; ++i) {
@@ -57,7 +57,7 @@ void absorb(Material& m, Rgb exponent, float index) {
     for (size_t c = 0; c < 3; ++c) factor.value[c] *= std::exp(-2 * exponent[c]);
     return;
   }
-  for (size_t c = 0; c < 3; ++c) m.base_color.value[c] *= kept_evenly(exponent[c], index);
+  for (size_t c = 0; c < 3; ++c) m.base_color.value[c] *= diffuse_transmittance(exponent[c], index);
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ Material MitsubaBsdfs::principled(const MitsubaNode& node) {
   if (grain.texture < 0 && m.roughness.texture < 0 && is_opaque && !m.is_thin && grain.value > 0) {
     // The model's aspect is for widths; roughness is the square root of a width.
     const float aspect = std::pow(1 - 0.9f * std::min(grain.value, 1.0f), 0.25f);
-    set_two_widths(m, m.roughness.value / aspect, m.roughness.value * aspect);
+    set_anisotropic_roughness(m, m.roughness.value / aspect, m.roughness.value * aspect);
   } else if (grain.texture >= 0 || grain.value > 0) {
     leave_out("anisotropic");
   }

@@ -75,7 +75,7 @@ class MitsubaLightReader {
   void point();
   void spot();
   void projector();
-  void throw_picture(Light& e, int32_t texture, double half_width, double half_height);
+  void project_picture(Light& e, int32_t texture, double half_width, double half_height);
   bool is_checkerboard(const MitsubaNode& texture) const;
   void directional();
   void envmap();
@@ -131,7 +131,7 @@ void MitsubaLightReader::spot() {
     const ColorInput c = textures_.color(*picture);
     e.radiance *= c.value;
     if (cutoff < 90)
-      throw_picture(e, c.texture, std::tan(rad_from_deg(cutoff)), std::tan(rad_from_deg(cutoff)));
+      project_picture(e, c.texture, std::tan(rad_from_deg(cutoff)), std::tan(rad_from_deg(cutoff)));
     else
       scene_.warnings.add(label() + "its texture is not supported where it is 180 degrees wide");
   }
@@ -140,8 +140,8 @@ void MitsubaLightReader::spot() {
 
 // Projects a picture of that half width and height at distance 1, with its first row at -y. The
 // axes are those of to_world without its scale.
-void MitsubaLightReader::throw_picture(Light& e, int32_t texture, double half_width,
-                                       double half_height) {
+void MitsubaLightReader::project_picture(Light& e, int32_t texture, double half_width,
+                                         double half_height) {
   if (texture < 0) return;
   const Vec3d z = normalize(world_.columns[2]);
   const Vec3d x = normalize(world_.columns[0] - z * dot(world_.columns[0], z));
@@ -156,7 +156,7 @@ void MitsubaLightReader::throw_picture(Light& e, int32_t texture, double half_wi
 void MitsubaLightReader::projector() {
   Light e;
   e.kind = LightKind::point;
-  e.lights_plane_evenly = true;
+  e.has_uniform_plane = true;
   const MitsubaNode* given = find_parameter(node_, "irradiance");
   ColorInput c = given ? textures_.emission(*given) : ColorInput{};
   double aspect = 1;
@@ -174,7 +174,7 @@ void MitsubaLightReader::projector() {
   e.radiance = c.value * float(pi * get_number(node_, "scale", 1));
   e.position = Vec3(world_.translation - scene_.origin);
   // The picture's left is at +x and its top at +y, as for cameras.
-  throw_picture(e, c.texture, -half_height * aspect, -half_height);
+  project_picture(e, c.texture, -half_height * aspect, -half_height);
   if (e.texture >= 0) add(std::move(e));
 }
 
@@ -212,8 +212,8 @@ void MitsubaLightReader::envmap() {
   const std::string file = get_text(node_, "filename", "");
   const ConfinedPath path = tree_.file(file);
   std::string problem = path.problem;
-  if (path.is_fine() && scene_.left_out_image_bytes) {
-    *scene_.left_out_image_bytes += size_of_left_out(path.path);
+  if (path.is_fine() && scene_.skipped_image_bytes) {
+    *scene_.skipped_image_bytes += size_of_left_out(path.path);
     return;
   }
   if (!set_axes(e)) return;

@@ -204,8 +204,8 @@ class PbrtLightReader {
   bool read_image(const std::string& file) {
     const ConfinedPath path = confined_path(context_.folder, file);
     std::string problem = path.problem;
-    if (path.is_fine() && scene_.left_out_image_bytes) {
-      *scene_.left_out_image_bytes += size_of_left_out(path.path);
+    if (path.is_fine() && scene_.skipped_image_bytes) {
+      *scene_.skipped_image_bytes += size_of_left_out(path.path);
       return false;
     }
     if (path.is_fine()) {

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "import/absorption.h"
+#include "import/anisotropic_roughness.h"
 #include "import/blend_materials.h"
 #include "import/measured_bsdf.h"
 #include "import/spectra.h"
-#include "import/two_widths.h"
 
 namespace troffer {
 
@@ -79,7 +79,7 @@ void PbrtMaterials::read_roughness(const PbrtParams& params, Material& m,
                                                                 : RoughnessMeaning::alpha;
   const bool is_grained = m.kind == MaterialKind::conductor && u.texture < 0 && v.texture < 0;
   if (is_grained && u.value != v.value) {
-    set_two_widths(m, u.value, v.value);
+    set_anisotropic_roughness(m, u.value, v.value);
   } else if (u.texture != v.texture || u.value != v.value) {
     m.roughness.value = std::sqrt(std::max(u.value, 0.0f) * std::max(v.value, 0.0f));
     if (u.texture < 0) m.roughness.texture = v.texture;
@@ -219,7 +219,7 @@ Material PbrtMaterials::make(const PbrtMaterial& material) {
   return m;
 }
 
-uint32_t PbrtMaterials::with_turned_normals(uint32_t material) {
+uint32_t PbrtMaterials::with_flipped_normal_map(uint32_t material) {
   const auto found = turned_.find(material);
   if (found != turned_.end()) return found->second;
   Material copy = scene_.materials[material];

@@ -47,7 +47,7 @@ class PbrtMaterials {
   // Returns the index of a copy for meshes whose (u,v) run clockwise. pbrt's y of a normal map is
   // normal × x there too (its materials.h, NormalMap), but the scene's runs up the image. The copy
   // inverts the green channel.
-  uint32_t with_turned_normals(uint32_t material);
+  uint32_t with_flipped_normal_map(uint32_t material);
   // Absorption of a medium per metre. Unsupported media add a warning and absorb nothing.
   Rgb read_medium(const std::string& type, const PbrtParams& params);
 

@@ -204,7 +204,7 @@ void PbrtPlacer::set_normal_map(Mesh& mesh) {
     scene_.warnings.add(
         "a normal map on triangles whose texture coordinates run both ways: its y is that of the "
         "larger part");
-  if (2 * turned > all) mesh.material = materials_.with_turned_normals(mesh.material);
+  if (2 * turned > all) mesh.material = materials_.with_flipped_normal_map(mesh.material);
 }
 
 // Places an instance as a shared mesh. Returns false if the mesh has to be copied instead.

@@ -101,9 +101,10 @@ const RadianceLook& RadianceMaterials::look_of(const std::string& name, const So
   return looks_[name] = look;
 }
 
-RadianceLook RadianceMaterials::even_look_of(const std::string& name, const SourcePlace& place) {
+RadianceLook RadianceMaterials::look_without_patterns(const std::string& name,
+                                                      const SourcePlace& place) {
   RadianceLook look = look_of(name, place);
-  if (!look.patterns.empty()) look.emission *= even_part(look.patterns, true);
+  if (!look.patterns.empty()) look.emission *= constant_part(look.patterns, true);
   look.patterns.clear();
   return look;
 }
@@ -139,7 +140,7 @@ std::vector<RadianceMaterials::Modifier> RadianceMaterials::patterns_of(
 }
 
 // Product of the patterns that are constant. Others are left out with a warning.
-Rgb RadianceMaterials::even_part(const std::vector<Modifier>& patterns, bool is_light) {
+Rgb RadianceMaterials::constant_part(const std::vector<Modifier>& patterns, bool is_light) {
   Rgb product{1};
   for (const Modifier& p : patterns) {
     std::string why = "is not supported";
@@ -208,7 +209,7 @@ RadianceLook RadianceMaterials::convert(const std::string& name, const RadianceM
   } else {
     material = radiance_material(m, scene_.warnings);
     material.base_color.value =
-        clamp01(material.base_color.value * even_part(patterns_of(m), false));
+        clamp01(material.base_color.value * constant_part(patterns_of(m), false));
   }
   material.name = name;
   look.material = uint32_t(scene_.materials.size());

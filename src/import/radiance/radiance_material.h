@@ -41,7 +41,7 @@ class RadianceMaterials {
   // Throws InputError, at `place`, for missing arguments and circular modifiers.
   const RadianceLook& look_of(const std::string& name, const SourcePlace& place);
   // Returns the look without patterns: constant ones multiply the emission, others add a warning.
-  RadianceLook even_look_of(const std::string& name, const SourcePlace& place);
+  RadianceLook look_without_patterns(const std::string& name, const SourcePlace& place);
   // Returns the product of a look's patterns. Throws InputError if one of them cannot be evaluated.
   RadiancePattern pattern_of(const RadianceLook& look) const;
 
@@ -64,7 +64,7 @@ class RadianceMaterials {
   std::vector<Modifier> patterns_of(const RadianceModifier& m) const;
   RadianceLook convert(const std::string& name, const RadianceModifier& m);
   bool convert_emission(const RadianceModifier& m, RadianceLook& look);
-  Rgb even_part(const std::vector<Modifier>& patterns, bool is_light);
+  Rgb constant_part(const std::vector<Modifier>& patterns, bool is_light);
   RadianceLook mix(const std::string& name, const RadianceModifier& m);
   double foreground_share(const RadianceModifier& m);
 };

@@ -20,11 +20,11 @@ LightWeb beam(double half_angle, bool is_flat, const std::string& name) {
   constexpr int steps = 64;
   LightWeb web;
   web.name = name;
-  web.turns_rad = {0, 2 * pi_f};
+  web.horizontal_angles_rad = {0, 2 * pi_f};
   const double end = std::min(half_angle, is_flat ? pi / 2 : pi);
   std::vector<float> shares;
   for (int i = 0; i <= steps; ++i) {
-    web.heights_rad.push_back(float(end * i / steps));
+    web.vertical_angles_rad.push_back(float(end * i / steps));
     shares.push_back(is_flat ? std::max(0.0f, float(std::cos(end * i / steps))) : 1);
   }
   for (int turn = 0; turn < 2; ++turn)

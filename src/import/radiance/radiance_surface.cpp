@@ -66,9 +66,9 @@ bool RadianceSurfaces::is_surface(const std::string& type) {
   return false;
 }
 
-PlacedLook RadianceSurfaces::placed_look(const RadianceLook& look, const std::string& name,
-                                         const SourcePlace& place) const {
-  PlacedLook out;
+ShapeAttributes RadianceSurfaces::placed_look(const RadianceLook& look, const std::string& name,
+                                              const SourcePlace& place) const {
+  ShapeAttributes out;
   out.material = look.material;
   out.place = place;
   if (!look.emission.is_black())
@@ -78,7 +78,7 @@ PlacedLook RadianceSurfaces::placed_look(const RadianceLook& look, const std::st
 
 void RadianceSurfaces::add_polygon(const RadianceModifier& p, const std::string& name,
                                    std::vector<Vec3d> corners, bool is_inverted) {
-  const RadianceLook look = materials_.even_look_of(p.modifier, p.place);
+  const RadianceLook look = materials_.look_without_patterns(p.modifier, p.place);
   if (!look.is_there) return;
   if (look.is_spot) {
     add_radiance_spot(look, name, extent_of_polygon(corners, p.world, is_inverted), scene_);
@@ -93,7 +93,7 @@ void RadianceSurfaces::add_polygon(const RadianceModifier& p, const std::string&
   for (const Vec3d& c : corners) points.emplace_back(c - corners[0]);
   std::vector<Triangle> triangles;
   triangulate(points, triangles);
-  const PlacedLook placed = placed_look(look, name, p.place);
+  const ShapeAttributes placed = placed_look(look, name, p.place);
   if (placed.emission) {
     AnchoredMesh mesh;
     set_positions(mesh, corners);
@@ -116,7 +116,7 @@ void RadianceSurfaces::finish() {
     set_positions(mesh, all.positions);
     mesh.mesh.name = scene_.materials[material].name;
     mesh.mesh.triangles = all.triangles;
-    PlacedLook look;
+    ShapeAttributes look;
     look.material = material;
     look.place = all.place;
     placer_.add_mesh(mesh, Affine(), false, look);
@@ -124,7 +124,7 @@ void RadianceSurfaces::finish() {
   collected_.clear();
 }
 
-void RadianceSurfaces::add_cone(const RadianceModifier& p, const PlacedLook& look,
+void RadianceSurfaces::add_cone(const RadianceModifier& p, const ShapeAttributes& look,
                                 bool is_inverted) {
   const bool is_straight = p.type == "cylinder" || p.type == "tube";
   need(p, is_straight ? 7 : 8);
@@ -138,7 +138,7 @@ void RadianceSurfaces::add_cone(const RadianceModifier& p, const PlacedLook& loo
                    is_inward != is_inverted, look);
 }
 
-void RadianceSurfaces::add_ring(const RadianceModifier& p, const PlacedLook& look,
+void RadianceSurfaces::add_ring(const RadianceModifier& p, const ShapeAttributes& look,
                                 bool is_inverted) {
   need(p, 8);
   const Vec3d normal = vector_at(p, 3);
@@ -192,13 +192,13 @@ void RadianceSurfaces::add(const RadianceModifier& p, const std::string& name, b
     add_polygon(p, name, std::move(corners), is_inverted);
     return;
   }
-  const RadianceLook look = materials_.even_look_of(p.modifier, p.place);
+  const RadianceLook look = materials_.look_without_patterns(p.modifier, p.place);
   if (!look.is_there) return;
   if (look.is_spot) {
     add_radiance_spot(look, name, extent_of_round(p, is_inverted), scene_);
     return;
   }
-  const PlacedLook placed = placed_look(look, name, p.place);
+  const ShapeAttributes placed = placed_look(look, name, p.place);
   if (type == "sphere" || type == "bubble") {
     need(p, 4);
     const double r = p.arguments.reals[3];

@@ -41,10 +41,10 @@ class RadianceSurfaces {
   std::map<uint32_t, Collected> collected_;
   size_t triangles_ = 0;
 
-  PlacedLook placed_look(const RadianceLook& look, const std::string& name,
-                         const SourcePlace& place) const;
-  void add_cone(const RadianceModifier& p, const PlacedLook& look, bool is_inverted);
-  void add_ring(const RadianceModifier& p, const PlacedLook& look, bool is_inverted);
+  ShapeAttributes placed_look(const RadianceLook& look, const std::string& name,
+                              const SourcePlace& place) const;
+  void add_cone(const RadianceModifier& p, const ShapeAttributes& look, bool is_inverted);
+  void add_ring(const RadianceModifier& p, const ShapeAttributes& look, bool is_inverted);
   void add_source(const RadianceModifier& p, const std::string& name);
 };
 
