@@ -25,7 +25,7 @@ struct DirectScene {
   std::vector<const LightPrimitive*> pieces;  // light primitive of each source
   size_t left_out = 0;                        // number of light primitives that are not flat
   double magnitude = 0;                       // largest absolute coordinate, metres
-  float reach = 1;  // largest distance of hits in a cluster, as in rendering
+  float reach = 1;  // largest distance of hits in a cluster, metres, as in rendering
 };
 
 // The hits of 8 × 8 pixels as arrays of equal length; neighbouring pixels follow each other.

@@ -34,7 +34,7 @@ def against(rows, certified, method):
 
 
 def by_made(rows, certified):
-    """Returns the interpolated relative time of `against` if the asked error is compared."""
+    """Returns the relative time of the cheapest `fixed` run by the error that --error limits."""
     runs = runs_of(rows, certified["scene"], "fixed")
     enough = [r["seconds"] for r in runs if r["made"] <= certified["made"]]
     if not enough:

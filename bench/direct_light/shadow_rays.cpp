@@ -13,8 +13,8 @@ namespace troffer::bench {
 
 namespace {
 
-// Squared relative size up to which a source counts as near. Measured: only there the better points
-// are worth their cost.
+// Squared size over squared distance above which a source counts as near. Measured: only there the
+// better points are worth their cost.
 constexpr double near_size2 = 2;
 
 }  // namespace

@@ -72,7 +72,7 @@ def settings():
 
 
 def halves(program, interior, is_quick):
-    """Returns the reference's halves. They are unbiased, so any version of the program may render them."""
+    """Returns the reference's halves. They are unbiased, so any version of troffer may render them."""
     size = "80x60" if is_quick else interior.size
     paths = 256 if is_quick else interior.paths
     file = scene_file(interior, program.out)

@@ -16,7 +16,7 @@
 
 namespace troffer {
 
-// Not thread-safe.
+// A scene, its dimmers, and its prepared form. Not thread-safe.
 class ScriptScene {
  public:
   // Throws the errors of import_scene().
