@@ -13,7 +13,7 @@
 
 namespace troffer::test {
 
-// Materials with their tables. Bsdfs point into it, so it must outlive them.
+// Materials with their tables. Bsdfs point into the tables, so this must outlive them.
 struct Specimens {
   std::vector<std::string> names;
   std::vector<Material> materials;
