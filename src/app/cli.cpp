@@ -198,7 +198,9 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
       ->capture_default_str();
   add_daylight_options(*r, c.daylight);
   add_lasting_options(*r, c.lasting);
-  r->add_option("--stats", c.stats, "JSON file for counts, times and settings");
+  r->add_option("--stats", c.stats, "JSON file for counts, times, settings and the plan");
+  r->add_flag("--explain", c.explains,
+              "Say what the method chooses for this picture, why, and what it expects it to cost");
   r->add_flag("--quiet", c.is_quiet, "No progress bar, notes or warnings");
 }
 

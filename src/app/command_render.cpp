@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "app/commands.h"
@@ -13,10 +12,10 @@
 #include "app/picture_files.h"
 #include "app/process.h"
 #include "app/progress.h"
+#include "app/render_statistics.h"
 #include "app/signals.h"
 #include "app/solution_file.h"
 #include "app/unfinished.h"
-#include "app/up_json.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/process_group.h"
@@ -73,83 +72,6 @@ Camera place_camera(const PreparedScene& scene, const RenderCommand& c, const Ve
   return framing_camera(scene, up);
 }
 
-struct Seconds {
-  double import = 0, build = 0, preprocess_cpu = 0, render = 0, render_cpu = 0, write = 0;
-};
-
-// Returns the name of a rendering's end, for the statistics.
-const char* name_of(RenderEnd end) {
-  switch (end) {
-    case RenderEnd::complete:
-      return "complete";
-    case RenderEnd::good_enough:
-      return "error_limit";
-    case RenderEnd::out_of_time:
-      return "time_limit";
-    case RenderEnd::stopped:
-      break;
-  }
-  return "signal";
-}
-
-std::string statistics_json(const RenderCommand& c, const RenderResult& result, const Seconds& t,
-                            double total, const UpDecision& up) {
-  const RenderStatistics& s = result.statistics;
-  const Counters& n = s.counters;
-  nlohmann::ordered_json j;
-  j["version"] = TROFFER_VERSION;
-  j["method"] = c.method;
-  j["width"] = s.width;
-  j["height"] = s.height;
-  j["threads"] = thread_count(c.options.threads);
-  if (c.options.group != nullptr) j["processes"] = c.options.group->size();
-  j["viewing_rays"] = n.viewing_rays;
-  j["surrogate_samples"] = n.surrogates;
-  j["shadow_rays"] = n.shadow_rays;
-  j["shadow_rays_per_viewing_ray"] =
-      n.viewing_rays > 0 ? double(n.shadow_rays) / double(n.viewing_rays) : 0.0;
-  j["lit_certified"] = n.lit_certified;
-  j["dark_certified"] = n.dark_certified;
-  j["masked"] = n.masked;
-  j["mixed"] = n.mixed;
-  j["nan_samples"] = n.nan_samples;
-  j["viewing_error"] = {{"relative_rms", s.viewing_errors.relative_rms},
-                        {"share_above_1_percent", s.viewing_errors.share_above}};
-  j["seconds"] = {{"import", t.import},
-                  {"build", t.build},
-                  {"preprocess", s.preprocess_seconds},
-                  {"render", t.render},
-                  {"write", t.write},
-                  {"total", total},
-                  {"preprocess_cpu", t.preprocess_cpu},
-                  {"render_cpu", t.render_cpu},
-                  {"total_cpu", cpu_seconds()}};
-  if (s.is_by_paths) j["by_paths"] = true;
-  if (s.cells.cells > 0)
-    j["cells"] = {{"count", s.cells.cells},
-                  {"size", s.cells.size},
-                  {"rays", s.cells.rays},
-                  {"entries", s.cells.entries},
-                  {"rounds", s.cells.rounds},
-                  {"iterations", s.cells.iterations},
-                  {"unresolved", s.cells.unresolved},
-                  {"memory_mb", s.cells.bytes / 1e6},
-                  {"seconds", s.cells.seconds}};
-  j["peak_memory_mb"] = peak_memory_mb();
-  j["extension_rays"] = n.extension_rays;
-  j["spp"] = c.options.spp;
-  j["max_spp"] = most_viewing_rays(c.options).in_pixel;
-  j["seed"] = c.options.seed;
-  j["up"] = up_json(up);
-  j["is_complete"] = result.is_complete;
-  j["ended_by"] = name_of(result.end);
-  j["estimated_error"] = s.estimated_error;
-  j["share_done"] = s.share_done;
-  j["gaps_filled"] = s.gaps_filled;
-  j["unsampled"] = s.unsampled;
-  return j.dump(2) + "\n";
-}
-
 // Refuses outputs that would overwrite inputs or each other.
 void guard_files(const RenderCommand& c, OutputGuard& guard) {
   guard.add_inputs(c.scene, c.daylight);
@@ -198,7 +120,7 @@ struct Rendered {
 };
 
 Rendered prepare_and_render(const PreparedScene& scene, const Camera& camera, RenderCommand& c,
-                            const StopFlag& stop, Seconds& seconds) {
+                            const StopFlag& stop, RenderSeconds& seconds) {
   double cpu = cpu_seconds();
   const auto preparation =
       prepare_method(scene, c.options.method, c.options.kj92, c.options.indirect, c.solution,
@@ -341,7 +263,7 @@ int run_render(RenderCommand c) {
   const std::vector<OutputReservation> reserved = check_and_reserve(c, guard);
   warn_of_layers(c);
 
-  Seconds seconds;
+  RenderSeconds seconds;
   const ThreadLimit limit(c.options.threads);
   Camera camera;
   PreviewFiles files(c, camera);
@@ -373,6 +295,8 @@ int run_render(RenderCommand c) {
   check_options(scene, camera, c.options);  // before the radiosity, which may take long
 
   restrict_selection(scene.scene, c);
+  if (c.explains)
+    c.options.planned = [](const MethodPlan& plan) { fmt::print(stderr, "{}", as_text(plan)); };
   LastingRun lasting(c, start, stop_flag_of(group));
   lasting.begin(scene.scene, camera);
   const StopFlag& stop = lasting.stop();

@@ -56,6 +56,7 @@ struct RenderCommand {
   float fov_deg = 60;
   LastingOptions lasting;
   bool has_preview = false;  // outputs are also written during the rendering
+  bool explains = false;     // prints the plan before rendering
   bool is_quiet = false;
 };
 int run_render(RenderCommand command);

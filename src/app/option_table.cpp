@@ -129,6 +129,7 @@ constexpr std::array rows{
     OptionRow{"--polar", output, "FILE", "svg|png"},
     OptionRow{"--json", output, "", ""},
     OptionRow{"--stats", output, "FILE", "json"},
+    OptionRow{"--explain", output, "", ""},
     OptionRow{"--quiet", output, "", ""},
     OptionRow{"--help", output, "", ""},
     OptionRow{"--version", output, "", ""},

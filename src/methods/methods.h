@@ -16,6 +16,7 @@
 #include "gather/gather_records.h"
 #include "kj92/radiosity_light.h"
 #include "kj92/tree_sampling.h"
+#include "methods/method_plan.h"
 #include "transport/integrator.h"
 
 namespace troffer {
@@ -113,7 +114,8 @@ struct MethodInput {
 
 struct MethodRow {
   std::string_view name;
-  std::unique_ptr<Integrator> (*make)(const MethodInput&);
+  MethodPlan (*plan)(const MethodInput&);
+  std::unique_ptr<Integrator> (*make)(const MethodPlan&, const MethodInput&);
   // Returns the number of shadow rays that a viewing ray takes in a scene with this many lights:
   // approximate, and an upper limit.
   double (*rays_per_sample)(const MethodSettings&, size_t lights);
@@ -159,9 +161,14 @@ bool needs_radiosity(Method method, Indirect indirect);
 // True if the method makes cells: it then needs CellInput.
 bool needs_cells(Method method, Indirect indirect);
 
-// Makes the integrator, including cells and gathers if the method uses them. Returns null if
-// CellInput::stop was set meanwhile, or if more than CellInput::most_cells cells would be needed.
-// Throws EnvironmentError if memory runs out.
+// Decides how the method computes the light, by test paths at most.
+MethodPlan plan_method(Method method, const MethodInput& input);
+// Prepares what the plan asks for, such as cells and gathers, and makes the integrator. Returns
+// null if CellInput::stop was set meanwhile, or if more than CellInput::most_cells cells would be
+// needed. Throws EnvironmentError if memory runs out.
+std::unique_ptr<Integrator> make_integrator(Method method, const MethodPlan& plan,
+                                            const MethodInput& input);
+// Plans, then makes the integrator.
 std::unique_ptr<Integrator> make_integrator(Method method, const MethodInput& input);
 
 }  // namespace troffer

@@ -32,10 +32,15 @@ std::unique_ptr<Preparation> prepare(const PreparedScene& scene, Method method,
 
 std::unique_ptr<Integrator> make_integrator(const PreparedScene& scene, Method method,
                                             const MethodSettings& settings,
-                                            const Preparation* preparation, CellInput* cells) {
-  if (preparation == nullptr) return make_integrator(method, {scene, settings, nullptr, cells});
-  const RadiosityLight radiosity(scene, preparation->solution, preparation->selection);
-  return make_integrator(method, {scene, settings, &radiosity, cells});
+                                            const Preparation* preparation, CellInput* cells,
+                                            const std::function<void(const MethodPlan&)>& planned) {
+  std::optional<RadiosityLight> radiosity;
+  if (preparation != nullptr)
+    radiosity.emplace(scene, preparation->solution, preparation->selection);
+  const MethodInput input{scene, settings, radiosity ? &*radiosity : nullptr, cells};
+  const MethodPlan plan = plan_method(method, input);
+  if (planned) planned(plan);
+  return make_integrator(method, plan, input);
 }
 
 std::vector<uint32_t> lights_named(const Scene& scene, const std::vector<std::string>& names) {

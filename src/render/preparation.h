@@ -2,6 +2,7 @@
 // selection. Made once before the first viewing ray and shared by all integrators of a scene.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,11 +38,13 @@ std::unique_ptr<Preparation> prepare(const PreparedScene& scene, Method method,
                                      const ProgressCallback& progress, const StopFlag& stop);
 
 // Makes the integrator of a method. preparation and cells may be null if the method does not need
-// them (needs_radiosity, needs_cells). Scene and preparation must outlive the integrator. Returns
-// null if CellInput::stop was set.
-std::unique_ptr<Integrator> make_integrator(const PreparedScene& scene, Method method,
-                                            const MethodSettings& settings,
-                                            const Preparation* preparation, CellInput* cells);
+// them (needs_radiosity, needs_cells). Calls `planned`, which may be empty, between planning and
+// preparing. Scene and preparation must outlive the integrator. Returns null if CellInput::stop was
+// set.
+std::unique_ptr<Integrator> make_integrator(
+    const PreparedScene& scene, Method method, const MethodSettings& settings,
+    const Preparation* preparation, CellInput* cells,
+    const std::function<void(const MethodPlan&)>& planned = nullptr);
 
 // Returns the indices of lights with one of these names, for SelectionOptions::only. Throws
 // UsageError for a name that does not exist.

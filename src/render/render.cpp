@@ -1,5 +1,7 @@
 #include "render/render.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -109,6 +111,7 @@ class Picture {
   void show_preview_in_gaps(const Film& film, RenderResult& result) const;
   void keep_beginning() const;
   void keep_time_for_gaps();
+  PlannedPart planned_viewing_rays(const MethodPlan& plan, const MethodSettings& settings) const;
 
   const PreparedScene& scene_;
   const RenderOptions& options_;
@@ -204,6 +207,22 @@ void Picture::show_preview_in_gaps(const Film& film, RenderResult& result) const
     }
 }
 
+// Describes how many viewing rays pixels get.
+PlannedPart Picture::planned_viewing_rays(const MethodPlan& plan,
+                                          const MethodSettings& settings) const {
+  if (plan.is_by_forecast()) {
+    const PixelSampling s = sampling_by_paths(*plan.forecast, error_by_paths(settings.error),
+                                              most_by_paths(settings.most_viewing_rays));
+    return {"viewing rays", fmt::format("{} per pixel, up to {}", s.first, s.most),
+            "further ones until the noise of the pixel is allowed"};
+  }
+  const int most = most_viewing_rays(options_).in_pixel;
+  if (most <= options_.spp)
+    return {"viewing rays", fmt::format("{} per pixel", options_.spp), "no refinement"};
+  return {"viewing rays", fmt::format("{} per pixel, up to {}", options_.spp, most),
+          "further ones where samples or neighbours differ"};
+}
+
 // Leaves the result without layers if it was stopped before there was anything to show.
 void Picture::render(const Preparation* preparation, RenderResult& result) {
   const PictureView view{pixels_of(plan_.image), pixels_of(plan_.region), [&](float x, float y) {
@@ -232,7 +251,11 @@ void Picture::render(const Preparation* preparation, RenderResult& result) {
     cells.enough = &preparing->flag();
   }
   const std::unique_ptr<Integrator> integrator =
-      make_integrator(scene_, options_.method, settings, preparation, &cells);
+      make_integrator(scene_, options_.method, settings, preparation, &cells, [&](MethodPlan plan) {
+        plan.parts.push_back(planned_viewing_rays(plan, settings));
+        if (options_.planned) options_.planned(plan);
+        result.statistics.plan = std::move(plan);
+      });
   RenderStatistics& statistics = result.statistics;
   statistics.cells = cells.statistics;
   if (cells.quick) {

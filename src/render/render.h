@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -54,6 +55,8 @@ struct RenderOptions {
   const Preparation* preparation = nullptr;
   CellStore* cells = nullptr;  // certified: cells from before, updated for later use; may be null
   Preview* preview = nullptr;  // receives finished tiles; may be null
+  // Called with the plan before anything is prepared; may be empty.
+  std::function<void(const MethodPlan&)> planned;
   // Ends the work when its time is over; paths then fill the missing pixels. The stop flag of
   // render() must be the deadline's own. May be null.
   Deadline* deadline = nullptr;
@@ -116,6 +119,7 @@ struct RenderStatistics {
   double render_seconds = 0;      // of everything after it
   CellStatistics cells;           // empty if the method makes no cells
   bool is_by_paths = false;       // certified: paths replaced cells
+  MethodPlan plan;                // what was decided before the preparation
 };
 
 // complete: all that was asked for. good_enough: RenderOptions::error_limit is met. out_of_time:

@@ -1,0 +1,173 @@
+#include "methods/method_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "methods/methods.h"
+
+namespace troffer {
+
+namespace {
+
+// Settings of direct light at the first viewing rays of a pixel. In coarse pictures a hit gets
+// `draws` light samples if certificates would cost it more rays. Their noise is below the allowed
+// error there.
+CertifiedSettings settings_of_first(const MethodInput& in) {
+  constexpr double coarse = 0.2;
+  constexpr int draws = 32;
+  CertifiedSettings s =
+      certified_settings(in.settings.error, in.scene.scene.lights.size(), in.settings.viewing_rays);
+  if (in.cells != nullptr && in.cells->view != nullptr && in.settings.error >= coarse)
+    s.draws = draws;
+  return s;
+}
+
+// Settings of direct light beyond the first surface. In pictures, light samples replace
+// certificates where those cost more, and from error `coarse` on fewer samples do. Measuring points
+// keep certificates: they share cells, so all of them would have the same noise.
+CertifiedSettings drawn_beyond(const MethodInput& in, double coarse) {
+  constexpr int draws = 16, few_draws = 8;  // powers of two stratify best
+  CertifiedSettings s = settings_beyond_first(in);
+  if (in.cells->view != nullptr) s.draws = in.settings.error >= coarse ? few_draws : draws;
+  return s;
+}
+// Settings at the further viewing rays of a pixel, each of which is a small part of it, and at what
+// gloss shows along any viewing ray.
+CertifiedSettings settings_of_further(const MethodInput& in) {
+  CertifiedSettings s = drawn_beyond(in, 0.1);
+  s.matte_draw_factor = 2;
+  return s;
+}
+// Settings at cells. A cell averages eight or more hits, so few samples suffice from a smaller
+// error on.
+CertifiedSettings settings_of_cells(const MethodInput& in) {
+  return drawn_beyond(in, 0.02);
+}
+
+// Settings of the further viewing rays of a picture of direct light alone. The error of a pixel
+// comes from what its many further rays hit, so each of them may err by more in its own light.
+CertifiedSettings settings_of_further_direct(const MethodInput& in) {
+  constexpr double more = 3;
+  constexpr int few_draws = 8;  // a power of two stratifies best
+  CertifiedSettings s =
+      certified_settings(std::min(more * in.settings.error, 1.0), in.scene.scene.lights.size());
+  s.draws = few_draws;
+  return s;
+}
+
+// Returns the forecast for path tracing, or nothing where paths must not replace cells: indirect
+// light chosen explicitly, no picture, or cells kept in a store.
+std::optional<PathForecast> forecast(const MethodInput& in) {
+  const CellInput& cells = *in.cells;
+  if (in.settings.indirect != Indirect::automatic || cells.view == nullptr ||
+      cells.store != nullptr)
+    return std::nullopt;
+  const int most = most_by_paths(in.settings.most_viewing_rays);
+  const PathForecast f = forecast_paths(in.scene, *cells.view, error_by_paths(in.settings.error),
+                                        most, cells.seed, in.cells->counters);
+  // Near the limit of viewing rays, many pixels would stop before they reach the asked error.
+  if (4 * f.viewing_rays > most) return std::nullopt;
+  return f;
+}
+
+std::string sampling_in_words(const CertifiedSettings& s) {
+  std::string text = fmt::format("certificates and masks, allowed error {:.3g}", s.error);
+  if (s.draws > 0) text += fmt::format("; {} light samples where those cost less", s.draws);
+  return text;
+}
+
+void add_direct_parts(MethodPlan& plan, const MethodInput& in) {
+  plan.parts.push_back({"direct light", sampling_in_words(plan.first),
+                        fmt::format("{} lights, asked error {:.3g}", in.scene.scene.lights.size(),
+                                    in.settings.error)});
+}
+
+void plan_cells(MethodPlan& plan, const MethodInput& in) {
+  plan.light = PlannedLight::cells;
+  plan.first = settings_of_first(in);
+  plan.further = settings_of_further(in);
+  plan.at_cells = settings_of_cells(in);
+  plan.most_cells =
+      plan.forecast ? plan.forecast->rays_for_cells / rays_of_cell : in.cells->most_cells;
+  add_direct_parts(plan, in);
+  plan.parts.push_back({"direct light of further viewing rays", sampling_in_words(plan.further),
+                        "each is a small part of its pixel"});
+  std::string reason = "the default for reflected light";
+  if (plan.forecast)
+    reason = fmt::format(
+        "paths would take {:.3g} viewing rays per pixel and {:.3g} million rays; cells may cost "
+        "{:.3g} million ({:.3g} cells), else paths replace them",
+        plan.forecast->viewing_rays, plan.forecast->rays * 1e-6,
+        plan.forecast->rays_for_cells * 1e-6, plan.most_cells);
+  plan.parts.push_back({"reflected light", "gathered from cells", reason});
+}
+
+}  // namespace
+
+int most_by_paths(int asked) {
+  constexpr int most = 1 << 14;
+  return asked > 0 ? asked : most;
+}
+
+double error_beyond_first(const MethodInput& in) {
+  constexpr double least_error = 0.1;
+  return std::max(in.settings.error, least_error);
+}
+
+CertifiedSettings settings_beyond_first(const MethodInput& in) {
+  constexpr int few_points = 8;
+  CertifiedSettings s = certified_settings(error_beyond_first(in), in.scene.scene.lights.size());
+  s.gloss_samples = few_points;
+  return s;
+}
+
+MethodPlan plan_certified(const MethodInput& in) {
+  MethodPlan plan;
+  const bool keeps_cells = in.cells != nullptr && in.cells->store != nullptr;
+  if (in.scene.scene.lights.empty() && !keeps_cells) {
+    plan.parts.push_back({"all light", "path tracing", "the scene has no light to certify"});
+    return plan;
+  }
+  if (in.settings.measures_by_paths) {
+    plan.light = PlannedLight::sensor_paths;
+    plan.first = settings_of_first(in);
+    add_direct_parts(plan, in);
+    plan.parts.push_back({"reflected light", "paths", "few points: cells would cost more"});
+    return plan;
+  }
+  if (needs_cells(Method::certified, in.settings.indirect)) {
+    plan.forecast = forecast(in);
+    if (plan.forecast && plan.forecast->rays_for_cells < 0) {
+      plan.parts.push_back(
+          {"all light", "path tracing",
+           fmt::format("the asked error takes {:.3g} viewing rays per pixel, {:.3g} million rays "
+                       "in all; cells would cost more even if making them were free",
+                       plan.forecast->viewing_rays, plan.forecast->rays * 1e-6)});
+      return plan;
+    }
+    plan_cells(plan, in);
+    return plan;
+  }
+  plan.first = settings_of_first(in);
+  plan.light = PlannedLight::direct;
+  add_direct_parts(plan, in);
+  if (in.settings.is_direct_only() && in.settings.is_refined) {
+    plan.light = PlannedLight::staged_direct;
+    plan.further = settings_of_further_direct(in);
+    plan.parts.push_back({"direct light of further viewing rays", sampling_in_words(plan.further),
+                          "each is a small part of its pixel"});
+  }
+  plan.parts.push_back({"reflected light", "none", "not asked for"});
+  return plan;
+}
+
+std::string as_text(const MethodPlan& plan) {
+  std::string text;
+  for (const PlannedPart& p : plan.parts)
+    text += fmt::format("{}: {}{}\n", p.part, p.choice,
+                        p.reason.empty() ? std::string() : " (" + p.reason + ")");
+  return text;
+}
+
+}  // namespace troffer

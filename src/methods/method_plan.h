@@ -1,0 +1,70 @@
+// Plan of a method: what it decides before it prepares anything. The decisions depend on the scene,
+// the options and a few thousand test paths. Planning is the first of three steps: plan, prepare
+// (cells, fits), integrate. Printed by --explain and written to --stats.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "certified/certified_direct.h"
+#include "methods/path_forecast.h"
+
+namespace troffer {
+
+struct MethodInput;
+
+// How the light of a picture or of measuring points is computed.
+enum class PlannedLight : uint8_t {
+  path_tracing,   // by PathIntegrator
+  cells,          // certified direct light, reflected light gathered from cells
+  sensor_paths,   // certified direct light, reflected light by paths (measuring points)
+  direct,         // direct light alone, one kind of viewing ray
+  staged_direct,  // direct light alone; further viewing rays of a pixel get fewer samples
+  radiosity,      // reflected light from the radiosity solution (kj92)
+};
+
+// A decision in words: what was chosen for which part of the work, and why.
+struct PlannedPart {
+  std::string part, choice, reason;
+};
+
+struct MethodPlan {
+  PlannedLight light = PlannedLight::path_tracing;
+  std::vector<PlannedPart> parts;
+  // Test of path tracing, where paths may replace cells.
+  std::optional<PathForecast> forecast;
+
+  // certified: settings of direct light at first and further viewing rays, and at cells.
+  CertifiedSettings first{}, further{}, at_cells{};
+  // Limit of the number of cells. With more, paths take their place if there is a forecast.
+  double most_cells = std::numeric_limits<double>::infinity();
+
+  // True if the picture is path traced because the forecast says that this costs less.
+  bool is_by_forecast() const { return light == PlannedLight::path_tracing && forecast; }
+};
+
+// Returns the plan as lines of text, one per part: "part: choice (reason)".
+std::string as_text(const MethodPlan& plan);
+
+// Decides for `certified`. Traces test paths if paths may replace cells, and adds them to the
+// counters of `in.cells`.
+MethodPlan plan_certified(const MethodInput& in);
+
+// Allowed error of a picture by paths. Pictures by cells reach about half of the asked error, so
+// paths also have to do better than asked.
+constexpr double error_by_paths(double asked) {
+  return 0.75 * asked;
+}
+// Limit of viewing rays per pixel of a picture by paths. asked: that of the user; 0: none.
+int most_by_paths(int asked);
+
+// Allowed error of direct light beyond the first surface: at cells and at what gloss shows. At
+// least 0.1, because many cells average out and gloss carries only a part of the light.
+double error_beyond_first(const MethodInput& in);
+// Settings of direct light for that error.
+CertifiedSettings settings_beyond_first(const MethodInput& in);
+
+}  // namespace troffer
