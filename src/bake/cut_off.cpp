@@ -7,6 +7,7 @@
 
 #include "base/frame.h"
 #include "base/random.h"
+#include "base/streams.h"
 #include "base/warp.h"
 #include "render/cell_pilot.h"
 #include "trace/surface.h"
@@ -176,7 +177,7 @@ bool is_enclosed(const PreparedScene& scene, const LitPlace& place, float offset
     Ray ray;
     ray.origin = place.position + place.normal * offset;
     ray.direction = frame.to_world(cosine_hemisphere_from_square(
-        SobolGroup(hash_of(uint64_t{0x6e65'6172}), purpose_camera, k).get2(0)));
+        SobolGroup(hash_of(stream::cut_off_texels), purpose_camera, k).get2(0)));
     rays.push_back(ray);
   }
   scene.tracer.closest(rays, hits);

@@ -2,6 +2,7 @@
 
 #include "bake/atlas.h"
 #include "base/random.h"
+#include "base/streams.h"
 
 namespace troffer {
 
@@ -68,7 +69,7 @@ std::vector<std::vector<LitSides>> lit_sides(const PreparedScene& scene,
   const SideSites sites(surfaces);
   SiteSettings few = settings;
   few.samples = samples_of_side;
-  few.seed = hash_of(settings.seed, uint64_t{0x7369'6465});
+  few.seed = hash_of(settings.seed, stream::bake_sides);
   Counters counters;
   const std::vector<SiteLight> light =
       light_sites(scene, integrator, sites, few, {}, stop, counters);

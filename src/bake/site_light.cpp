@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/frame.h"
 #include "base/random.h"
+#include "base/streams.h"
 #include "base/warp.h"
 #include "render/cell_pilot.h"
 #include "render/sample_sets.h"
@@ -28,7 +29,6 @@ constexpr size_t looks = 8;  // rays from a sample that must all hit backs befor
                              // inside a body
 // Samples inside a body are left out if their mean light is at most this share of the others'.
 constexpr float most_within = 0.01f;
-constexpr uint64_t of_looks = 0x6c6f'6f6b, of_sites = 0x7369'7465;
 
 size_t sites_of_block(int samples) {
   return std::clamp(most_samples_of_block / size_t(std::max(samples, 1)), size_t{1},
@@ -266,7 +266,7 @@ class Lighting {
       w.pieces.take(sites_, site);
       if (w.pieces.is_empty()) continue;
       out[site - w.first].has_area = true;
-      const uint64_t stream = hash_of(settings_.seed, of_sites, site, uint64_t(set));
+      const uint64_t stream = hash_of(settings_.seed, stream::bake_sites, site, uint64_t(set));
       for (uint32_t i = 0; i < uint32_t(samples); ++i) {
         const SobolGroup random(stream, purpose_camera, i);
         w.places.push_back(w.pieces.place(random.get2(2).x, random.get2(0)));
@@ -287,7 +287,7 @@ class Lighting {
     if (w.places.empty()) return;
     const std::vector<uint8_t> is_within =
         within_bodies(scene_, w.places, w.sensors.offset,
-                      hash_of(settings_.seed, of_looks, w.first, uint64_t(set)));
+                      hash_of(settings_.seed, stream::bake_enclosure, w.first, uint64_t(set)));
     w.out.reset(w.places.size());
     const CheckContext context(&w, w.places.size(), name_of_sensor);
     integrator_.irradiance(w.sensors, *w.scratch, w.out, counters);
@@ -339,8 +339,8 @@ float share_of_fronts(const PreparedScene& scene, const SiteList& sites, size_t 
   const Box box = bounds(scene.scene);
   int fronts = 0;
   for (uint32_t i = 0; i < rays; ++i) {
-    const SobolGroup random(hash_of(seed, of_looks, site), purpose_camera, i);
-    const SobolGroup direction(hash_of(seed, of_looks, site), purpose_scatter(0), i);
+    const SobolGroup random(hash_of(seed, stream::bake_enclosure, site), purpose_camera, i);
+    const SobolGroup direction(hash_of(seed, stream::bake_enclosure, site), purpose_scatter(0), i);
     const Place place = pieces.place(random.get2(2).x, random.get2(0));
     const Ray ray = look(place, offset_of_point(place.position, box), direction.get2(0));
     std::array<Hit, 1> hit;

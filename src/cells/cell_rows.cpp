@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "base/streams.h"
 #include "base/vec.h"
 #include "cells/balance_solver.h"
 
@@ -130,12 +131,12 @@ std::vector<float> CellRows::differences(const std::vector<Rgb>& e, int threads)
 
 // All draws go together, because finding the cells of a row in memory takes longer than adding.
 std::vector<NoiseDraws> CellRows::noise_draws(const std::vector<float>& by_rows,
-                                              const std::vector<float>& by_hits,
+                                              const std::vector<float>& by_hits, uint64_t seed,
                                               int threads) const {
   const Packed rows = packed();
   std::vector<NoiseDraws> source(by_rows.size()), draws, next(by_rows.size());
   by_cells(source.size(), threads, [&](size_t i) {
-    uint64_t signs = hash_of(i, uint64_t{0x6472'6177});
+    uint64_t signs = hash_of(seed, i, stream::noise_signs);
     for (float& d : source[i]) {
       d = ((signs & 1) != 0 ? by_rows[i] : -by_rows[i]) +
           ((signs & 2) != 0 ? by_hits[i] : -by_hits[i]);

@@ -72,7 +72,8 @@ class CellRows {
   // (differences()) and by by_hits (half the difference of two halves of direct light). Each draw
   // gives both a random sign.
   std::vector<NoiseDraws> noise_draws(const std::vector<float>& by_rows,
-                                      const std::vector<float>& by_hits, int threads) const;
+                                      const std::vector<float>& by_hits, uint64_t seed,
+                                      int threads) const;
 
  private:
   enum class Half { first, second };

@@ -2,6 +2,7 @@
 // sampled lights where those cost less.
 #include <algorithm>
 
+#include "base/streams.h"
 #include "certified/certified_lights.h"
 #include "certified/open_parts.h"
 
@@ -20,8 +21,6 @@ float luminance_floor(float weight, float typical) {
 // mask, a facet in a mask, and a point at which a glossy BRDF or a texture is evaluated.
 constexpr double rays_of_gather = 12, rays_of_pair = 0.15, rays_of_mask = 0.3,
                  rays_of_facet = 1.0 / 12, rays_of_point = 0.3;
-// Random sequences for ClusterLights::sequence.
-constexpr uint64_t matte_sequence = 0x6d61'7474, reduced_sequence = 0x7468'7269;
 
 struct Counted {
   CertifiedCounters counters;
@@ -112,9 +111,9 @@ void CertifiedLights::set_draws(std::span<const uint32_t> members, uint32_t effo
   s.chosen.draws =
       std::max(budget_.draws * (is_matte ? budget_.matte_draw_factor : 1) / effort_divisor, 1u);
   if (effort_divisor > 1)
-    s.chosen.sequence = reduced_sequence + 2 * effort_divisor + (is_matte ? 1 : 0);
+    s.chosen.sequence = stream::reduced_light_samples + 2 * effort_divisor + (is_matte ? 1 : 0);
   else if (is_matte)
-    s.chosen.sequence = matte_sequence;
+    s.chosen.sequence = stream::matte_light_samples;
 }
 
 // Certifies up to four hits and measures the cost; certifies the others too if that costs less than

@@ -281,7 +281,7 @@ void Drawing::of_members(std::span<uint32_t> members, const std::vector<float>& 
 // Adds the variance of a run's sum. Sorted by light, samples are strata of equal probability, so
 // half the squared differences of neighbours estimate it. Samples of one pixel share a sequence.
 void add_variance(const WaitingHits& hits, std::span<const DrawnLightsScratch::Draw> run,
-                     DrawnLightsScratch& s, RadianceBatch& out) {
+                  DrawnLightsScratch& s, RadianceBatch& out) {
   s.terms.clear();
   for (const auto& d : run) {
     if (hits.is_direct[d.hit] == 0) continue;

@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "base/random.h"
+#include "base/streams.h"
 
 namespace troffer {
 
 namespace {
 
-constexpr uint64_t purpose_pilot = 0x6661'7271;
 // Pilot rays of a batch to the sky; suns get half as many triples.
 constexpr size_t pilots = 64;
 // Where no pilot ray arrives in a scene that seems shut out: one ray for this many hits, at most
@@ -37,7 +37,7 @@ class Pilots {
       sums_.sky += double(chances.all());
       sums_.suns += double(chances.suns());
       if (!(chances.all() > 0)) continue;
-      const uint64_t a = hash_of(r.stream, k, purpose_pilot);
+      const uint64_t a = hash_of(r.stream, k, stream::environment_pilot);
       const EnvironmentSampler::Choice c =
           d_.points.choose(chances, unit_float(uint32_t(a)), unit_float(uint32_t(a >> 32)));
       const size_t before = weights_.size();
@@ -71,7 +71,7 @@ class Pilots {
     if (d_.points.suns() == 0) return;
     for (size_t k = first; k < last; ++k) {
       const size_t i = index(k - first, last - first);
-      uint64_t random = hash_of(d_.hits.receivers[i].stream, k, purpose_pilot + 1);
+      uint64_t random = hash_of(d_.hits.receivers[i].stream, k, stream::sun_pilot);
       const EnvironmentSampler::Chances& chances =
           d_.points.chances_about(d_.hits.receivers[i].normal);
       if (!(chances.suns() > 0)) continue;

@@ -6,13 +6,13 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "base/streams.h"
 #include "certified/environment_sample_counts.h"
 
 namespace troffer {
 
 namespace {
 
-constexpr uint64_t purpose_points = 0x6661'7270;
 constexpr size_t most_waiting_rays = 16384;
 // Samples per hit at most where no pilot ray arrived: so little light cannot repay more.
 constexpr double most_of_closed = 1;
@@ -66,7 +66,8 @@ class Casting {
     const uint32_t m = members_[i];
     const EnvironmentSampler::Chances& chances = chances_of(i, n);
     if (!((sun < 0 ? chances.all() : chances.of_sun(size_t(sun))) > 0)) return;
-    s_.streams.assign(n, hash_combine(d_.hits.draw_streams[m], purpose_points + uint64_t(sun + 1)));
+    s_.streams.assign(
+        n, hash_combine(d_.hits.draw_streams[m], stream::environment_rays + uint64_t(sun + 1)));
     s_.samples.resize(n);
     s_.uniform.resize(2 * size_t(n));
     for (uint32_t j = 0; j < n; ++j) s_.samples[j] = first + j;

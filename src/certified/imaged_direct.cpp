@@ -1,6 +1,7 @@
 #include "certified/imaged_direct.h"
 
 #include "base/random.h"
+#include "base/streams.h"
 
 namespace troffer {
 
@@ -49,7 +50,7 @@ void ImagedDirect::queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBa
       // random numbers.
       ++walk.scatterings;
       ++walk.vertex;
-      walk.stream = hash_of(walk.stream, uint64_t{0x696d'6167}, uint64_t(m));
+      walk.stream = hash_of(walk.stream, stream::mirror_image_of_hit, uint64_t(m));
       s.wave.walks.push_back(walk);
       s.wave.vertices.push_back(wave.vertices[i]);
       const SurfaceScattering& scattering = wave.scatterings[i];

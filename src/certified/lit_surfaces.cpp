@@ -6,6 +6,7 @@
 
 #include "base/frame.h"
 #include "base/random.h"
+#include "base/streams.h"
 #include "base/warp.h"
 #include "trace/surface.h"
 
@@ -112,7 +113,7 @@ bool are_lit_surfaces_closed(const PreparedScene& scene, const EnvironmentSample
   for (uint32_t i = 0; i < scene.primitives.size(); ++i)
     if (!scene.primitives[i].is_infinite()) lights.push_back(i);
   if (lights.empty()) return false;
-  Random random(0x6c69'7470);
+  Random random(stream::lit_surfaces);
   Walks walks(scene, points);
   std::vector<Ray> rays;
   for (size_t first = 0; first < most_walks; first += walks_at_a_time) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "base/streams.h"
 #include "certified/environment_sample_counts.h"
 #include "certified/environment_sampler.h"
 #include "shadow/cell_points.h"
@@ -17,7 +18,6 @@ namespace {
 constexpr double clutter = 2;
 // Least share of the light assumed to arrive when the number of samples is chosen.
 constexpr double least_open = 0.02;
-constexpr uint64_t purpose_far = 0x6661'7200;
 
 // Number of largest facets kept as candidates for occluding walls.
 constexpr size_t most_large = 96;
@@ -90,7 +90,7 @@ class FarDrawing {
   }
 
   void set_numbers(uint32_t m, uint32_t n, uint32_t before) {
-    s_.streams.assign(n, hash_combine(d_.hits.draw_streams[m], purpose_far));
+    s_.streams.assign(n, hash_combine(d_.hits.draw_streams[m], stream::open_sky_parts));
     s_.samples.resize(n);
     s_.numbers.resize(3 * size_t(n));
     for (uint32_t j = 0; j < n; ++j) s_.samples[j] = before + j;

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/streams.h"
 #include "base/units.h"
 #include "gather/cell_direct.h"
 #include "gather/cell_rays.h"
@@ -64,6 +65,9 @@ class Builder {
   void keep(const CellDirectLight& lit);
   void note(const std::vector<CellTask>& tasks, CellsSeen& seen);
   bool run(const std::vector<CellTask>& tasks);
+  CellLighting lighting_by(const DirectLight& direct) const {
+    return {walks_, direct, stop_, options_.seed, options_.threads, options_.group};
+  }
   bool has_enough() const { return options_.enough != nullptr && options_.enough->load(); }
   std::span<const CellHit> hits_of(const CellTask& task) const;
   bool run_and_go_on(std::vector<CellTask> tasks, double most_cells,
@@ -120,7 +124,7 @@ void Builder::ask(const CellPilot& pilot) {
     for (uint32_t k = 0; k < sets && !places[i].is_gloss; ++k) {
       CellTask& t = tasks.emplace_back();
       t.count = rays / sets;
-      t.stream = hash_of(options_.seed, i + k * uint32_t(places.size()), uint64_t{0x7069'6c6f});
+      t.stream = hash_of(options_.seed, i + k * uint32_t(places.size()), stream::cell_pilot_rays);
       t.weight = places[i].weight / float(sets * t.count);
       t.from = {&places[i].hit, 1};
     }
@@ -238,14 +242,13 @@ double Builder::rays_for_points(const DirectLight& direct, const CellPilot& pilo
   PointsSeen points{asking_.rays, {}, asking_.end};
   for (const PilotHit& h : asking_.seen) points.seen.push_back({h.cell, h.weight});
   std::vector<float> straight;
-  for (const Rgb& e :
-       direct_light_at(pilot.places, walks_, direct, options_.threads, stop_, counters_))
+  for (const Rgb& e : direct_light_at(pilot.places, lighting_by(direct), counters_))
     straight.push_back(luminance(e));
   CellErrors off{rows_.differences(light.irradiance, options_.threads), lit.half_difference};
   for (uint32_t c = 0; c < map_->size(); ++c)
     if (map_->is_narrow(c)) off.by_rows[c] = off.by_hits[c] = 0;
   const PointsNoise noise = noise_at_points(points, straight, rows_, light.irradiance, off,
-                                            options_.points, options_.threads);
+                                            options_.points, options_.seed, options_.threads);
   return times_as_many_rays(noise, double(rows_.ray_count()));
 }
 
@@ -261,8 +264,7 @@ bool Builder::add_direct(const DirectLight& direct, CellDirectLight& lit) {
   for (uint32_t c = 0; store_ == nullptr && c < draws.size(); ++c)
     if (plan_.first_rays(c) < rays_for_proofs)
       draws[c] = uint8_t(draws_of_ray * plan_.first_rays(c));
-  add_direct_light(*map_, walks_, direct, draws, first, options_.threads, options_.group, stop_,
-                   lit, counters_);
+  add_direct_light(*map_, lighting_by(direct), draws, first, lit, counters_);
   return !stop_.load();
 }
 
@@ -296,7 +298,7 @@ std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, const CellPilo
   std::vector<NoiseDraws> noise;
   if (options_.points.most_rays > 0)
     noise = rows_.noise_draws(rows_.differences(light.irradiance, options_.threads),
-                              lit.half_difference, options_.threads);
+                              lit.half_difference, options_.seed, options_.threads);
   statistics_.unresolved = plan_.unresolved();
   statistics_.cells = map_->size();
   double sum = 0;

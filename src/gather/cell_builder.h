@@ -1,6 +1,6 @@
 // Makes cache cells where pilot gather rays hit, and where rays from cells hit. Ends when cells
-// without a row carry a negligible share of the light (docs/method/cells.md). Called once per picture or
-// list of points (methods/methods.cpp).
+// without a row carry a negligible share of the light (docs/method/cells.md). Called once per
+// picture or list of points (methods/methods.cpp).
 #pragma once
 
 #include <functional>

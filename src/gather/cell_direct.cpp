@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/streams.h"
 
 namespace troffer {
 
@@ -13,7 +14,6 @@ namespace {
 
 constexpr size_t cells_of_group = 32;
 constexpr size_t hits_of_group = 64;
-constexpr uint64_t stream_of_cells = 0x6365'6c6c, stream_of_places = 0x706c'6163;
 
 struct StreamedHit {
   const CellHit* hit;
@@ -78,15 +78,14 @@ void set(CellDirectLight& light, uint32_t cell, size_t n, const F& value) {
 }
 
 // Computes direct light at hits, each with its own random stream, into w.out.
-void light_hits(const GatherWalks& walks, const DirectLight& direct,
-                std::span<const StreamedHit> hits, Worker& w) {
-  if (!w.direct) w.direct = direct.make_scratch();
-  direct.begin({}, *w.direct);
+void light_hits(const CellLighting& by, std::span<const StreamedHit> hits, Worker& w) {
+  if (!w.direct) w.direct = by.direct.make_scratch();
+  by.direct.begin({}, *w.direct);
   w.out.reset(hits.size());
   const CheckContext context(&w, hits.size(), name_of_hit);
   w.wave.clear();
   const auto send = [&] {
-    if (w.wave.size() > 0) direct.queue(w.wave, *w.direct, w.out, w.counters);
+    if (w.wave.size() > 0) by.direct.queue(w.wave, *w.direct, w.out, w.counters);
     w.wave.clear();
   };
   for (uint32_t index = 0; index < hits.size(); ++index) {
@@ -96,20 +95,22 @@ void light_hits(const GatherWalks& walks, const DirectLight& direct,
     walk.stream = hits[index].stream;
     w.wave.walks.push_back(walk);
     w.wave.vertices.push_back(vertex_of(*hits[index].hit));
-    w.wave.scatterings.emplace_back(walks.white_at(*hits[index].hit, pi_f)).is_low_variance = true;
+    w.wave.scatterings.emplace_back(by.walks.white_at(*hits[index].hit, pi_f)).is_low_variance =
+        true;
     if (w.wave.size() == hits_of_group) send();
   }
   send();
-  direct.flush(*w.direct, w.out, w.counters);
+  by.direct.flush(*w.direct, w.out, w.counters);
 }
 
-void light_group(const CellMap& map, const GatherWalks& walks, const DirectLight& direct,
-                 std::span<const uint32_t> cells, Worker& w, CellDirectLight& light) {
+void light_group(const CellMap& map, const CellLighting& by, std::span<const uint32_t> cells,
+                 Worker& w, CellDirectLight& light) {
   w.hits.clear();
   for (const uint32_t c : cells)
     for (const CellHit& hit : map.hits(c))
-      w.hits.push_back({&hit, hash_of(uint64_t(c), uint32_t(w.hits.size()), stream_of_cells)});
-  light_hits(walks, direct, w.hits, w);
+      w.hits.push_back({&hit, hash_of(by.seed, uint64_t(c), uint32_t(w.hits.size()),
+                                      stream::direct_light_of_cells)});
+  light_hits(by, w.hits, w);
   size_t index = 0;
   for (const uint32_t c : cells) {
     const size_t n = map.hits(c).size();
@@ -122,7 +123,7 @@ void light_group(const CellMap& map, const GatherWalks& walks, const DirectLight
 }
 
 // Like light_group(), by light samples.
-void sample_group(const CellMap& map, const GatherWalks& walks, std::span<const uint32_t> cells,
+void sample_group(const CellMap& map, const CellLighting& by, std::span<const uint32_t> cells,
                   std::span<const uint8_t> samples, Worker& w, CellDirectLight& light) {
   w.arrivals.clear();
   for (const uint32_t c : cells)
@@ -132,13 +133,13 @@ void sample_group(const CellMap& map, const GatherWalks& walks, std::span<const 
       GatherArrival& a = w.arrivals.emplace_back();
       a.walk.index = uint32_t(w.arrivals.size() - 1);
       a.walk.sample = k;
-      a.walk.stream = hash_of(uint64_t(c), uint64_t{0x6472'6177});
+      a.walk.stream = hash_of(by.seed, uint64_t(c), stream::light_samples_of_cells);
       a.hit = hits[k * hits.size() / samples[c]];
     }
   const size_t n = w.arrivals.size();
   w.gather.light.reset(n);
   const CheckContext context(&w, n, name_of_hit);
-  walks.sample_direct_light(w.arrivals, w.gather, w.counters);
+  by.walks.sample_direct_light(w.arrivals, w.gather, w.counters);
   size_t index = 0;
   for (const uint32_t c : cells)
     set(light, c, map.hits(c).empty() ? 0 : samples[c], [&](size_t) {
@@ -150,29 +151,27 @@ void sample_group(const CellMap& map, const GatherWalks& walks, std::span<const 
 
 }  // namespace
 
-void add_direct_light(const CellMap& map, const GatherWalks& walks, const DirectLight& direct,
-                      std::span<const uint8_t> samples, size_t first_cell, int threads,
-                      ProcessGroup* group, const StopFlag& stop, CellDirectLight& light,
-                      Counters& counters) {
+void add_direct_light(const CellMap& map, const CellLighting& by, std::span<const uint8_t> samples,
+                      size_t first_cell, CellDirectLight& light, Counters& counters) {
   const std::vector<uint32_t> order = cells_in_order(map, first_cell);
   light.irradiance.resize(map.size());
   light.half_difference.resize(map.size(), 0);
-  std::vector<Worker> workers(size_t(thread_count(threads)));
+  std::vector<Worker> workers(size_t(thread_count(by.threads)));
   const auto cells_of = [&](size_t g) {
     const size_t first = g * cells_of_group;
     return std::span(order).subspan(first, std::min(cells_of_group, order.size() - first));
   };
   SharedWork work;
   work.items = (order.size() + cells_of_group - 1) / cells_of_group;
-  work.threads = threads;
+  work.threads = by.threads;
   work.act = [&](size_t g, size_t slot) {
     Worker& w = workers[slot];
     w.certified.clear();
     w.sampled.clear();
     for (const uint32_t c : cells_of(g))
       (c < samples.size() && samples[c] > 0 ? w.sampled : w.certified).push_back(c);
-    if (!w.certified.empty()) light_group(map, walks, direct, w.certified, w, light);
-    if (!w.sampled.empty()) sample_group(map, walks, w.sampled, samples, w, light);
+    if (!w.certified.empty()) light_group(map, by, w.certified, w, light);
+    if (!w.sampled.empty()) sample_group(map, by, w.sampled, samples, w, light);
     return true;
   };
   work.save = [&](size_t g, SharedWork::Bytes& bytes) {
@@ -187,24 +186,23 @@ void add_direct_light(const CellMap& map, const GatherWalks& walks, const Direct
       light.half_difference[c] = in.next<float>();
     }
   };
-  share(group, work, stop);
+  share(by.group, work, by.stop);
   for (const Worker& w : workers) counters += w.counters;
 }
 
-std::vector<Rgb> direct_light_at(std::span<const CellHit> places, const GatherWalks& walks,
-                                 const DirectLight& direct, int threads, const StopFlag& stop,
+std::vector<Rgb> direct_light_at(std::span<const CellHit> places, const CellLighting& by,
                                  Counters& counters) {
   std::vector<Rgb> irradiance(places.size());
-  std::vector<Worker> workers(size_t(thread_count(threads)));
+  std::vector<Worker> workers(size_t(thread_count(by.threads)));
   const size_t groups = (places.size() + hits_of_group - 1) / hits_of_group;
-  parallel_for_slots(groups, threads, [&](size_t g, size_t slot) {
-    if (stop.load(std::memory_order_relaxed)) return;
+  parallel_for_slots(groups, by.threads, [&](size_t g, size_t slot) {
+    if (by.stop.load(std::memory_order_relaxed)) return;
     Worker& w = workers[slot];
     const size_t first = g * hits_of_group, end = std::min(first + hits_of_group, places.size());
     w.hits.clear();
     for (size_t i = first; i < end; ++i)
-      w.hits.push_back({&places[i], hash_of(uint64_t(i), stream_of_places)});
-    light_hits(walks, direct, w.hits, w);
+      w.hits.push_back({&places[i], hash_of(by.seed, uint64_t(i), stream::direct_light_of_places)});
+    light_hits(by, w.hits, w);
     for (size_t i = first; i < end; ++i)
       irradiance[i] = w.out.direct[i - first] + w.out.indirect[i - first];
   });

@@ -19,19 +19,25 @@ struct CellDirectLight {
   std::vector<float> half_difference;  // luminance: half the difference of the two halves of hits
 };
 
+// How direct light is computed. Results are incomplete once `stop` is set.
+struct CellLighting {
+  const GatherWalks& walks;
+  const DirectLight& direct;
+  const StopFlag& stop;
+  uint64_t seed = 0;
+  int threads = 0;                // 0: all cores
+  ProcessGroup* group = nullptr;  // processes that light the same cells together; may be null
+};
+
 // Computes direct light of all cells from number `first` on; values of earlier cells stay. Cells
 // near each other are lit in groups. samples: per cell, the number of light samples of one light
-// each, as in path tracing; 0 or missing: by `direct`. group: may be null. Incomplete once `stop`
-// is set.
-void add_direct_light(const CellMap& map, const GatherWalks& walks, const DirectLight& direct,
-                      std::span<const uint8_t> samples, size_t first, int threads,
-                      ProcessGroup* group, const StopFlag& stop, CellDirectLight& light,
-                      Counters& counters);
+// each, as in path tracing; 0 or missing: by CellLighting::direct.
+void add_direct_light(const CellMap& map, const CellLighting& by, std::span<const uint8_t> samples,
+                      size_t first, CellDirectLight& light, Counters& counters);
 
-// Returns the irradiance straight from sources at each place, weighted by its coat. Incomplete once
-// `stop` is set.
-std::vector<Rgb> direct_light_at(std::span<const CellHit> places, const GatherWalks& walks,
-                                 const DirectLight& direct, int threads, const StopFlag& stop,
+// Returns the irradiance straight from sources at each place, weighted by its coat. This process
+// alone lights them.
+std::vector<Rgb> direct_light_at(std::span<const CellHit> places, const CellLighting& by,
                                  Counters& counters);
 
 }  // namespace troffer

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/streams.h"
 #include "base/units.h"
 
 namespace troffer {
@@ -138,7 +139,7 @@ double Cells::variance_of_rays(std::span<const CellHit> places, uint64_t seed,
       Walk walk;
       walk.index = k;
       walk.sample = k;
-      walk.stream = hash_of(seed, p, uint64_t{0x6e61'7272});
+      walk.stream = hash_of(seed, p, stream::narrow_cells_test);
       set_out(places[p * places.size() / tried], direction_number(walk), walk);
       s.walks.push_back(walk);
     }

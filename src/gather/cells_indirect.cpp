@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/streams.h"
 #include "gather/gather_lobe.h"
 #include "gather/sensor_distributions.h"
 
@@ -15,9 +16,6 @@ namespace {
 constexpr uint32_t least_rays = 4, most_rays = 64, most_further_rays = 16;
 // Viewing rays that every pixel has.
 constexpr uint32_t first_samples = 4;
-
-// Seeds the random numbers of gather rays with an effort divisor above 1.
-constexpr uint64_t reduced_numbers = 0x7468'7266;
 
 // Returns the number of gather rays of a hit, a power of two. The first samples of a pixel share
 // what it wants equally. Sample s of further ones gets wanted / (2 s + 1). The sum of 1 / rays is
@@ -48,9 +46,9 @@ GatherNumbers numbers_of_hit(float wanted, const Walk& at, uint32_t effort_divis
   const bool is_first = at.sample < first_samples;
   if (is_first) effort_divisor = 1;
   const uint32_t rays = rays_of_hit(wanted, at.sample, effort_divisor);
-  return {
-      rays, at.sample * (is_first || effort_divisor > 1 ? rays : most_rays),
-      effort_divisor > 1 ? hash_combine(at.stream, reduced_numbers + effort_divisor) : at.stream};
+  return {rays, at.sample * (is_first || effort_divisor > 1 ? rays : most_rays),
+          effort_divisor > 1 ? hash_combine(at.stream, stream::reduced_gather_rays + effort_divisor)
+                             : at.stream};
 }
 
 }  // namespace

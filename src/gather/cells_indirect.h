@@ -1,5 +1,5 @@
-// Indirect light by gather rays that read cells (docs/method/cells.md). First hits of viewing rays take
-// the fit of the picture's records where it holds, and gather for themselves elsewhere.
+// Indirect light by gather rays that read cells (docs/method/cells.md). First hits of viewing rays
+// take the fit of the picture's records where it holds, and gather for themselves elsewhere.
 #pragma once
 
 #include <memory>

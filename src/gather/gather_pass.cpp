@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/streams.h"
 #include "gather/gather_lobe.h"
 
 namespace troffer {
@@ -183,7 +184,7 @@ void GatherPass::see(Tile& tile, Worker& w) const {
       Walk walk;
       walk.ray = ray_of(x, y, spreads.emplace_back());
       walk.index = uint32_t(g.walks.size());
-      walk.stream = hash_of(options_.seed, uint64_t(x), uint64_t(y), uint64_t{0x7669'6577});
+      walk.stream = hash_of(options_.seed, uint64_t(x), uint64_t(y), stream::gather_records);
       g.walks.push_back(walk);
     }
   const size_t pixels = g.walks.size();

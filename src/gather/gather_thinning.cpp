@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/random.h"
+#include "base/streams.h"
 
 namespace troffer {
 
@@ -33,7 +34,7 @@ bool GatherPass::has_close_pixels(Worker& w) const {
           ray_of(image.x0 + (2 * i + 1) * image.width() / (2 * along),
                  image.y0 + (2 * j + 1) * image.height() / (2 * along), spreads.emplace_back());
       walk.index = uint32_t(g.walks.size());
-      walk.stream = hash_of(options_.seed, walk.index, uint64_t{0x636c'6f73});
+      walk.stream = hash_of(options_.seed, walk.index, stream::thinning_sight);
       g.walks.push_back(walk);
     }
   cells_.walks().follow(g.walks.size(), Coherence::none, g, w.counters);
@@ -47,7 +48,7 @@ bool GatherPass::has_close_pixels(Worker& w) const {
     for (int k = 0; k < rays; ++k) {
       Walk walk;
       walk.index = asked;
-      walk.stream = hash_of(options_.seed, uint64_t{0x636c'6f74});
+      walk.stream = hash_of(options_.seed, stream::thinning_rays);
       walk.sample = asked++;
       set_out(a.hit, direction_number(walk), walk);
       if (!walk.throughput.is_black()) walks.push_back(walk);

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/streams.h"
 #include "base/warp.h"
 #include "transport/bsdf_at.h"
 #include "transport/two_sides.h"
@@ -329,7 +330,7 @@ void GatherWalks::light_up_by(const LightTreeDirect& tree, const FlatMirror* mir
     s.rough.walks.push_back(a.walk);
     if (mirror != nullptr)
       s.rough.walks.back().stream =
-          hash_of(a.walk.stream, uint64_t{0x696d'6167}, uint64_t(mirror->mesh));
+          hash_of(a.walk.stream, stream::mirror_image_of_arrival, uint64_t(mirror->mesh));
     s.rough.vertices.push_back(vertex_of(a.hit));
     s.rough.bsdfs.push_back(white_at(a.hit, 1));
   }

@@ -72,13 +72,14 @@ double weight_of(const PointGathers& g, double mean) {
 
 PointsNoise noise_at_points(const PointsSeen& points, const std::vector<float>& direct,
                             const CellRows& rows, const std::vector<Rgb>& light,
-                            const CellErrors& off, const GatheringPoints& how, int threads) {
+                            const CellErrors& off, const GatheringPoints& how, uint64_t seed,
+                            int threads) {
   TROFFER_CHECK(points.end.size() == PointsSeen::sets * direct.size());
   PointsNoise noise{.other_rays = how.other_rays};
   if (points.rays == 0) return noise;
   const std::vector<float> none(light.size(), 0);
-  const std::vector<NoiseDraws> by_rows = rows.noise_draws(off.by_rows, none, threads),
-                                by_hits = rows.noise_draws(none, off.by_hits, threads);
+  const std::vector<NoiseDraws> by_rows = rows.noise_draws(off.by_rows, none, seed, threads),
+                                by_hits = rows.noise_draws(none, off.by_hits, seed, threads);
   const std::vector<PointGathers> lit = gathers_of(points, direct, light);
   if (lit.empty()) return noise;
   double mean = 0, deviations = 0;

@@ -57,7 +57,8 @@ struct PointsNoise {
 // cosine-distributed gather rays; guided and stratified ones are fewer or err less.
 PointsNoise noise_at_points(const PointsSeen& points, const std::vector<float>& direct,
                             const CellRows& rows, const std::vector<Rgb>& light,
-                            const CellErrors& off, const GatheringPoints& how, int threads);
+                            const CellErrors& off, const GatheringPoints& how, uint64_t seed,
+                            int threads);
 
 // Returns how many times as many rays the cells are worth, at least 1. A ray of a cell and one of a
 // point cost the same, and the time for a given error is to be least. With G rays of points, others

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/random.h"
+#include "base/streams.h"
 
 namespace troffer {
 
@@ -51,7 +52,7 @@ CellTask RowPlan::task_of(uint32_t cell, uint32_t first, uint32_t count) const {
   return {cell,
           first,
           count,
-          hash_of(seed_, cell, uint64_t{0x726f'7773}),
+          hash_of(seed_, cell, stream::cell_rows),
           1,
           {},
           first / rays_of_step % 2 == 1};
@@ -163,7 +164,7 @@ std::vector<CellTask> RowPlan::refining_tasks(double rays) {
         tasks.push_back({c,
                          first,
                          std::min(half - first, rays_of_refining_task),
-                         hash_of(seed_, c, is_second ? 1u : 0u, uint64_t{0x7265'6669}),
+                         hash_of(seed_, c, is_second ? 1u : 0u, stream::cell_row_refinement),
                          1,
                          {},
                          is_second});

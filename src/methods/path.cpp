@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/streams.h"
 #include "transport/bsdf_at.h"
 #include "transport/look_through_panes.h"
 #include "transport/purposes.h"
@@ -186,7 +187,7 @@ void PathIntegrator::add_images(Scratch& s, RadianceBatch& out, Counters& counte
       if (mirror.above(s.wave.vertices[i].surface.position) <= mirror.tolerance) continue;
       s.imaged.take(s.wave, i);
       Walk& walk = s.imaged.walks.back();
-      walk.stream = hash_of(walk.stream, uint64_t{0x696d'6167}, uint64_t(m));
+      walk.stream = hash_of(walk.stream, stream::mirror_image_of_path, uint64_t(m));
     }
     if (s.imaged.size() == 0) continue;
     lit_images_[m].queue(s.imaged, s.lights, out, counters);

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/streams.h"
 #include "methods/path.h"
 #include "transport/allowed_error.h"
 #include "transport/purposes.h"
@@ -149,7 +150,7 @@ double rays_wanted(const std::vector<Tile>& tiles, double error, double typical,
 PathForecast forecast_paths(const PreparedScene& scene, const PictureView& view, double error,
                             int most, uint64_t seed, Counters& counters) {
   Counters own;
-  const uint64_t stream = hash_of(seed, uint64_t{0x7061'7468});
+  const uint64_t stream = hash_of(seed, stream::path_forecast);
   const ViewingRays rays = sets_of_rays(view, stream);
   const std::vector<Tile> tiles = tiles_of(stream, luminances(scene, rays, own));
   counters += own;

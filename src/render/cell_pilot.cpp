@@ -6,6 +6,7 @@
 
 #include "base/frame.h"
 #include "base/random.h"
+#include "base/streams.h"
 #include "base/units.h"
 #include "base/warp.h"
 #include "scene/mesh_in_world.h"
@@ -117,7 +118,7 @@ void sample(const Scene& scene, const Area& area, const Vec2& u, Vec3& position,
 
 CellPilot picture_pilot(const ViewingCamera& camera, const ImageSize& size, uint64_t seed) {
   CellPilot pilot;
-  const uint64_t stream = hash_of(seed, uint64_t{0x7069'6374});
+  const uint64_t stream = hash_of(seed, stream::picture_pilot);
   for (uint32_t i = 0; i < rays_of_pilot; ++i) {
     const SobolGroup random(stream, purpose_camera, i);
     const Vec2 at = random.get2(0);
@@ -134,7 +135,7 @@ CellPilot surfaces_pilot(const PreparedScene& scene, uint64_t seed) {
   const Areas areas = areas_of(scene.scene);
   if (areas.all.empty()) return pilot;
   const Box box = bounds(scene.scene);
-  const uint64_t stream = hash_of(seed, uint64_t{0x7375'7266});
+  const uint64_t stream = hash_of(seed, stream::surfaces_pilot);
   for (uint32_t i = 0; i < places_of_pilot; ++i) {
     const SobolGroup random(stream, purpose_camera, i);
     const double at = (double(i) + 0.5) / places_of_pilot * areas.all.back().end;

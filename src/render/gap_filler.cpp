@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "base/random.h"
+#include "base/streams.h"
 
 namespace troffer {
 
@@ -46,7 +47,7 @@ void GapFiller::use(std::unique_ptr<Integrator> quick) {
 void GapFiller::trace(const std::vector<Pixel2>& pixels, uint32_t first_sample, Film* film,
                       const StopFlag& stop) {
   // independent of the picture's own samples
-  const uint64_t seed = hash_of(options_.seed, uint64_t{0x6761'7073});
+  const uint64_t seed = hash_of(options_.seed, stream::gap_filler);
   const size_t batches = (pixels.size() + pixels_of_batch - 1) / pixels_of_batch;
   parallel_for_slots(batches, options_.threads, [&](size_t b, size_t slot) {
     if (stop.load(std::memory_order_relaxed)) return;

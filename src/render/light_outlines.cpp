@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "base/streams.h"
 #include "render/light_shapes.h"
 #include "render/segment_walk.h"
 #include "trace/surface.h"
@@ -228,7 +229,7 @@ void LightOutlines::check_covers(const PreparedScene& scene, const ViewingCamera
       if (!is_known(x, y)) continue;
       rays.clear();
       is_lamp.clear();
-      Random random(hash_of(uint64_t(x), uint64_t(y)));
+      Random random(hash_of(uint64_t(x), uint64_t(y), stream::outline_check));
       for (int k = 0; k < across * across; ++k) {
         const Vec2 jitter = random.next_vec2();
         const Vec2 place = (Vec2{float(k % across), float(k / across)} + jitter) * (1.0f / across);

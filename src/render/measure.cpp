@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/random.h"
+#include "base/streams.h"
 #include "base/units.h"
 #include "render/audit.h"
 #include "render/measured_points.h"
@@ -135,7 +136,7 @@ class PointsMeasuring {
            !scene_.scene.lights.empty();
   }
   PointsRun run_of(Round round) const {
-    return {hash_of(options_.seed, uint64_t(round), uint64_t{0x6175'6469}), options_.threads,
+    return {hash_of(options_.seed, uint64_t(round), stream::measuring_rounds), options_.threads,
             samples_of_batch_, nullptr, stop_};
   }
   // Returns the integrator with the method's direct light and path-traced indirect light.

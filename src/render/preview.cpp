@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "base/streams.h"
 #include "render/camera.h"
 #include "render/first_sight.h"
 #include "render/gap_filler.h"
@@ -60,7 +61,7 @@ bool sample(const Integrator& integrator, const ViewingCamera& camera, const Blo
     RadianceBatch radiance;
     Counters counters;
   };
-  const uint64_t seed = hash_of(options.seed, uint64_t{0x6c6f'6f6b}, uint64_t(blocks.side));
+  const uint64_t seed = hash_of(options.seed, stream::preview, uint64_t(blocks.side));
   std::vector<Work> work(size_t(thread_count(options.threads)));
   values = {Image(blocks.across(), blocks.down()), Image(blocks.across(), blocks.down()), {}};
   values.normals.assign(values.light.pixels.size(), Vec3{});

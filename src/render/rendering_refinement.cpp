@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/streams.h"
 #include "render/edge_map.h"
 #include "render/rendering.h"
 #include "transport/allowed_error.h"
@@ -209,7 +210,7 @@ void Rendering::keep_in_bounds(const PixelRect& tile, FurtherRays& wanted) const
 bool Rendering::add_surrogates(const PixelRect& tile, Work& w) {
   constexpr size_t rays_at_a_time = 1024;
   // independent of the samples
-  const uint64_t seed = hash_of(options_.seed, uint64_t{0x676c'616e});
+  const uint64_t seed = hash_of(options_.seed, stream::surrogate_rays);
   const auto send = [&] {
     const CheckContext context(&w, w.rays.size(), name_of_ray);
     w.radiance.reset(w.rays.size());
@@ -247,7 +248,7 @@ double Rendering::typical_luminance() {
   w.rays.clear();
   w.pixels.clear();
   // independent of the picture's own samples
-  const uint64_t seed = hash_of(options_.seed, uint64_t{0x7479'7069});
+  const uint64_t seed = hash_of(options_.seed, stream::typical_luminance);
   const int width = plan_.image.width(), height = plan_.image.height();
   const int nx = std::min(most, width), ny = std::min(most, height);
   for (int j = 0; j < ny; ++j)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "base/streams.h"
 #include "shadow/mask_variance.h"
 #include "shadow/round_cover.h"
 
@@ -12,7 +13,6 @@ namespace troffer {
 namespace {
 
 // Random numbers of a pair of receiver and cell, distinct for each purpose and pass.
-constexpr uint64_t purpose_shift = 0x5851f42d4c957f2dull, purpose_points = 0x14057b7ef767814full;
 uint64_t numbers_of(const SourceCellTask& cell, uint32_t member, uint64_t pass, uint64_t purpose) {
   return mix64(cell.receiver(member).stream + cell.stream + pass * 0x9e3779b97f4a7c15ull + purpose);
 }
@@ -39,7 +39,7 @@ MaskShare mask_share_of(const SourceCellTask& cell, uint32_t member, const Facet
   const ShadowReceiver& r = cell.receiver(member);
   CoverageMask& mask = memory.mask;
   OpenSamples& samples = memory.samples;
-  const uint64_t bits = numbers_of(cell, member, pass, purpose_shift);
+  const uint64_t bits = numbers_of(cell, member, pass, stream::mask_shift);
   samples.shift = {unit_float(uint32_t(bits)), unit_float(uint32_t(bits >> 32))};
   cover(frame, facets, frame.to_canvas(Vec3d(r.origin)), samples.shift, mask);
   cover(frame, facets.round(), Vec3d(r.origin), samples.shift, mask);
@@ -78,10 +78,10 @@ void add_integral(const SourceCellTask& cell, uint32_t member, float light, floa
   const auto n = uint32_t(std::ceil(std::max(wanted * share, std::min(wanted, 4.0f))));
   if (source.integrand->is_smooth(source.number, member))
     return add_lattice_integral(cell, member, memory.samples, light, share_variance, n,
-                                numbers_of(cell, member, 0, purpose_points), memory.lattice,
+                                numbers_of(cell, member, 0, stream::mask_points), memory.lattice,
                                 results);
   memory.points.clear();
-  draw_points(cell.frame, memory.samples, n, numbers_of(cell, member, 0, purpose_points),
+  draw_points(cell.frame, memory.samples, n, numbers_of(cell, member, 0, stream::mask_points),
               memory.points);
   if (memory.points.empty()) return;
   memory.values.resize(memory.points.size());
@@ -108,8 +108,8 @@ void add_integral(const SourceCellTask& cell, uint32_t member, float light, floa
 void queue_samples(const SourceCellTask& cell, uint32_t member, float light, uint32_t pass,
                    uint32_t passes, const MaskMemory& memory, SourceResults& results) {
   results.rays.add(member, cell.receiver(member).origin, memory.samples, light,
-                   cell.source.unoccluded[member], numbers_of(cell, member, pass, purpose_points),
-                   passes);
+                   cell.source.unoccluded[member],
+                   numbers_of(cell, member, pass, stream::mask_points), passes);
 }
 
 MaskShare counted_mask(const SourceCellTask& cell, uint32_t member, const FacetList& facets,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "base/streams.h"
 #include "shadow/cell_points.h"
 
 namespace troffer {
@@ -12,7 +13,6 @@ namespace troffer {
 namespace {
 
 constexpr size_t most_rays = 128, most_far_rays = 64, rays_of_receiver = 4;
-constexpr uint64_t purpose_pilot = 0x7069'6c6f'7400;
 
 // True if the ray from x along d hits a convex quadrilateral.
 bool meets(const Quad& q, const Vec3d& x, const Vec3d& d) {
@@ -91,7 +91,7 @@ double sky_open_share(const ShadowCluster& cluster, std::span<const LightRequest
     for (size_t r = 0; r < requests.size(); ++r) all += light_of(r);
     if (!(all > 0)) continue;
     const ShadowReceiver& receiver = cluster.receivers[i];
-    const uint64_t random = hash_of(receiver.stream, k, purpose_pilot);
+    const uint64_t random = hash_of(receiver.stream, k, stream::source_pilot);
     double target = unit_double(random) * all;
     size_t chosen = requests.size();
     for (size_t r = 0; r < requests.size() && (chosen == requests.size() || target >= 0); ++r) {
@@ -119,7 +119,7 @@ double open_share(const LightRequest& request, std::span<const ShadowReceiver> r
   Pilots pilots;
   for (size_t k = 0; k < rays; ++k) {
     const ShadowReceiver& r = receivers[(2 * k + 1) * n / (2 * rays)];
-    const uint64_t random = mix64(hash_of(r.stream, k, purpose_pilot) + request.stream);
+    const uint64_t random = mix64(hash_of(r.stream, k, stream::source_pilot) + request.stream);
     const Vec3d y = points.at(float(unit_double(random << 32)), float(unit_double(random)));
     pilots.add(r, y, cell.plane.normal, points.area());
   }

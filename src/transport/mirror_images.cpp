@@ -5,6 +5,7 @@
 
 #include "base/merge_polygons.h"
 #include "base/random.h"
+#include "base/streams.h"
 #include "transport/light_tree_direct.h"
 
 namespace troffer {
@@ -117,7 +118,7 @@ float light_from(const PreparedScene& scene, const Candidate& c, float share) {
   const std::vector<Vec3>& o = c.mirror.outline;
   for (uint32_t i = 0; i < points_of_mirror; ++i) {
     // sample the outline's triangle fan by area
-    const SobolGroup numbers(hash_of(uint64_t{0x6d69'7272}), 0, i);
+    const SobolGroup numbers(hash_of(stream::mirror_candidates), 0, i);
     const Vec2 u = numbers.get2(0);
     float at = numbers.get(2) * c.area;
     size_t k = 2;
@@ -131,7 +132,7 @@ float light_from(const PreparedScene& scene, const Candidate& c, float share) {
     Walk walk;
     walk.index = i;
     walk.sample = i;
-    walk.stream = hash_of(uint64_t{0x6d69'7272}, c.mirror.mesh);
+    walk.stream = hash_of(stream::mirror_light, c.mirror.mesh);
     wave.walks.push_back(walk);
     wave.vertices.push_back(make_sensor_vertex(p, c.mirror.normal, c.mirror.tolerance));
     wave.bsdfs.push_back(white);

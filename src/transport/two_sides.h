@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/random.h"
+#include "base/streams.h"
 #include "transport/purposes.h"
 #include "transport/vertex.h"
 #include "transport/walk.h"
@@ -25,7 +26,7 @@ inline Vertex far_side(const Vertex& v) {
 
 // Returns a random stream for the far side that is independent of this side's.
 inline uint64_t far_stream(uint64_t stream) {
-  return hash_of(stream, uint64_t{0x6661'7220'7369'6465});
+  return hash_of(stream, stream::far_side);
 }
 
 // Moves the far side's part out of `bsdf` and returns it. Sets `far` and `walk`'s stream to those

@@ -157,7 +157,7 @@ TEST_CASE("draws of noise: every cell errs by itself, and so do its rays and its
   rows.finish(cells);
   std::vector<float> by_rows(cells, 3), by_hits(cells, 4);
   by_rows[0] = by_hits[0] = 0;
-  const std::vector<NoiseDraws> draws = rows.noise_draws(by_rows, by_hits, 2);
+  const std::vector<NoiseDraws> draws = rows.noise_draws(by_rows, by_hits, 0, 2);
   REQUIRE(draws.size() == cells);
   double of_others = 0, of_first = 0;
   for (uint32_t c = 1; c < cells; ++c)
@@ -174,7 +174,7 @@ TEST_CASE("draws of noise: every cell errs by itself, and so do its rays and its
   both.add({0, 1, 0, false, Rgb{0}}, std::vector<RowEntry>{{1, Rgb{0.5f}}});
   both.add({1, 1, 0, false, Rgb{0}}, std::vector<RowEntry>{{0, Rgb{0.5f}}});
   both.finish(2);
-  const std::vector<NoiseDraws> around = both.noise_draws({1, 0}, {0, 0}, 1);
+  const std::vector<NoiseDraws> around = both.noise_draws({1, 0}, {0, 0}, 0, 1);
   for (const float d : around[0])
     CHECK(std::abs(d) == doctest::Approx(1 + 0.25 + 0.0625 + 0.015625).epsilon(1e-3));
 }

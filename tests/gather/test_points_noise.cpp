@@ -61,7 +61,7 @@ TEST_CASE("points that see all cells err as their mean does, by however few rays
       // Direct light is as much again.
       const PointsNoise noise = noise_at_points(
           seen, std::vector<float>(40, 1), rows, light,
-          {rows.differences(light, 1), std::vector<float>(cells, 0)}, {64, 64, 0}, 1);
+          {rows.differences(light, 1), std::vector<float>(cells, 0)}, {64, 64, 0}, 0, 1);
       by_rows += noise.by_rows / worlds;
       CHECK(noise.by_hits == 0);
       CHECK(noise.gather_rays == 40 * 64);
@@ -82,7 +82,7 @@ TEST_CASE("points gather by as many rays as bring them to the error, within what
   const auto rays = [&](double error) {
     const PointsNoise noise = noise_at_points(
         seen, std::vector<float>(10, 0), rows, light,
-        {std::vector<float>(cells, 0), std::vector<float>(cells, 0)}, {64, 4096, error}, 1);
+        {std::vector<float>(cells, 0), std::vector<float>(cells, 0)}, {64, 4096, error}, 0, 1);
     return noise.gather_rays / 10;
   };
   CHECK(rays(0.05) == doctest::Approx(400).epsilon(0.05));
@@ -96,7 +96,7 @@ TEST_CASE("dark points say nothing of noise") {
   const CellRows rows = cells_of_chance(random, light);
   const PointsNoise noise = noise_at_points(
       PointsSeen{16, {}, {0, 0, 0, 0}}, {0, 3}, rows, light,
-      {rows.differences(light, 1), std::vector<float>(cells, 1)}, {64, 4096, 0.01}, 1);
+      {rows.differences(light, 1), std::vector<float>(cells, 1)}, {64, 4096, 0.01}, 0, 1);
   CHECK(noise.by_rows == 0);
   CHECK(noise.by_hits == 0);
   CHECK(times_as_many_rays(noise, 1000) == 1);
