@@ -71,14 +71,14 @@ CertifiedDirect::CertifiedDirect(const PreparedScene& scene,
   for (uint32_t light = 0; light < sampler_.lights(); ++light) {
     if (sampler_.is_empty(light)) continue;
     at_transmitting_.push_back(light);
-    if (!lights_.has(light)) at_opaque_.push_back(light);
+    if (!lights_.sources().has(light)) at_opaque_.push_back(light);
   }
 }
 
 std::unique_ptr<DirectLightScratch> CertifiedDirect::make_scratch() const {
   return std::make_unique<Scratch>(
       settings_.estimator, ShadowWorld(scene_.scene, *occluders_, scene_.tracer),
-      SourceIntegrand(scene_, uint32_t(settings_.gloss_samples), lights_.competition()));
+      SourceIntegrand(scene_, uint32_t(settings_.gloss_samples), lights_.sources().competition()));
 }
 
 void CertifiedDirect::begin(const SampleRequest& request, DirectLightScratch& scratch) const {
@@ -122,11 +122,11 @@ void CertifiedDirect::queue_hit(const WaveHits& wave, size_t i, Scratch& s, Radi
   if (!scattering.has_diffuse && !scattering.has_rough) return;
   const bool is_direct = is_direct_at(walk);
   const bool is_certified = !scattering.is_transmitting();
-  if (is_certified && !lights_.is_empty()) {
+  if (is_certified && !lights_.sources().is_empty()) {
     if (scattering.is_lambertian)
       s.lights.hits.add_matte(walk, v, scattering.whole.diffuse, is_direct);
     else
-      s.lights.hits.add_glossy(walk, v, scattering, lights_.competition(), is_direct);
+      s.lights.hits.add_glossy(walk, v, scattering, lights_.sources().competition(), is_direct);
   }
   const SampledVertex at{walk,
                          v,
@@ -149,7 +149,7 @@ void CertifiedDirect::weigh(SeenEmission& seen) const {
 }
 
 float CertifiedDirect::weight_against(const CertifiedSource& source, const Walk& walk) const {
-  const NominalSourceDensity& competitor = lights_.competition();
+  const NominalSourceDensity& competitor = lights_.sources().competition();
   const SurfacePlace at = source.far != nullptr
                               ? SurfacePlace{walk.last_position, walk.last_normal}
                               : competitor.place(walk.last_position, walk.last_normal);
@@ -157,28 +157,29 @@ float CertifiedDirect::weight_against(const CertifiedSource& source, const Walk&
 }
 
 float CertifiedDirect::weight_of_miss(const Walk& walk, uint32_t primitive) const {
-  if (walk.last_both_sides || !lights_.has(scene_.primitives[primitive].light))
+  if (walk.last_both_sides || !lights_.sources().has(scene_.primitives[primitive].light))
     return sampler_.miss_weight(walk, primitive, uint32_t(settings_.shadow_rays));
-  const CertifiedSource* source = lights_.source_towards(primitive, walk.ray.direction);
+  const CertifiedSource* source = lights_.sources().source_towards(primitive, walk.ray.direction);
   if (source == nullptr) return 1;
   return weight_against(*source, walk);
 }
 
 // MIS weight of emission that a walk hit, against sampling the source from the previous vertex.
 float CertifiedDirect::weight_of(const Walk& walk, const Vertex& v) const {
-  const bool is_sampled = walk.last_both_sides || !lights_.has(uint32_t(v.surface.light));
+  const bool is_sampled = walk.last_both_sides || !lights_.sources().has(uint32_t(v.surface.light));
   if (is_sampled) return sampler_.emission_weight(walk, v, uint32_t(settings_.shadow_rays));
   const int32_t primitive = primitive_at(scene_, v.surface);
-  if (primitive >= 0 && lights_.is_drawn(uint32_t(v.surface.light))) {
-    const NominalSourceDensity& competitor = lights_.competition();
+  if (primitive >= 0 && lights_.sources().is_drawn(uint32_t(v.surface.light))) {
+    const NominalSourceDensity& competitor = lights_.sources().competition();
     return power_heuristic(
         walk.pdf, competitor.density(uint32_t(primitive),
                                      competitor.place(walk.last_position, walk.last_normal),
                                      walk.ray.direction));
   }
   const CertifiedSource* source =
-      primitive < 0 ? nullptr
-                    : lights_.source_of(uint32_t(primitive), !v.is_front, v.surface.position);
+      primitive < 0
+          ? nullptr
+          : lights_.sources().source_of(uint32_t(primitive), !v.is_front, v.surface.position);
   if (source == nullptr) return 1;
   return weight_against(*source, walk);
 }

@@ -1,5 +1,4 @@
-// Sharing of gathers between records: how many further rays they need, and linear fits.
-#include "gather/gather_pass.h"
+#include "gather/gather_fits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,14 +43,14 @@ int half_of(int x, int y) {
 // are apart. Behind the edge of such a thing light changes within less than a pixel, whatever the
 // record's few rays saw. Surfaces that see each other, as in a corner, do not count, because light
 // changes gradually there.
-bool GatherPass::is_beside(int x, int y, uint32_t r) const {
+bool GatherFits::is_behind_edge(int x, int y, uint32_t r) const {
   constexpr float close = 3, least_height = 0.03f;
-  const GatherRecord& at = out_.records_[r];
+  const GatherRecord& at = records_.all()[r];
   const auto around = [&](const auto& visit) {
     for (int j = y - 1; j <= y + 1; ++j)
       for (int i = x - 1; i <= x + 1; ++i)
-        out_.of_pixel(i, j, [&](uint32_t o) {
-          const GatherRecord& n = out_.records_[o];
+        records_.of_pixel(i, j, [&](uint32_t o) {
+          const GatherRecord& n = records_.all()[o];
           visit(n.hit, n.hit.position - at.hit.position);
         });
   };
@@ -69,8 +68,8 @@ bool GatherPass::is_beside(int x, int y, uint32_t r) const {
 }
 
 // True if the gather at one record also says something about the other.
-bool GatherPass::is_neighbour(uint32_t r, uint32_t o, Part part) const {
-  const GatherRecord &at = out_.records_[r], &n = out_.records_[o];
+bool GatherFits::is_neighbour(uint32_t r, uint32_t o, Part part) const {
+  const GatherRecord &at = records_.all()[r], &n = records_.all()[o];
   if (part == &GatherRecord::gloss && n.place.material != at.place.material) return false;
   return is_one_surface(at.hit, n.hit, at.spacing);
 }
@@ -82,29 +81,29 @@ bool GatherPass::is_neighbour(uint32_t r, uint32_t o, Part part) const {
 // must not count for more; hence the quotient.
 // The other half's numbers of rays follow from what this half has met. With them, a record would
 // count for less where its half is bright.
-float GatherPass::usual_rays(int x, int y, uint32_t r) const {
+float GatherFits::usual_rays(int x, int y, uint32_t r) const {
   float rays = 0, records = 0;
   const int half = half_of(x, y);
   for (int j = y - usual_pixels; j <= y + usual_pixels; ++j)
     for (int i = x - usual_pixels; i <= x + usual_pixels; ++i) {
       if (half_of(i, j) != half) continue;
-      out_.of_pixel(i, j, [&](uint32_t o) {
+      records_.of_pixel(i, j, [&](uint32_t o) {
         if (!is_neighbour(r, o, &GatherRecord::matte)) return;
-        rays += out_.records_[o].rays;
+        rays += records_.all()[o].rays;
         records += 1;
       });
     }
   return rays / std::max(records, 1.0f);
 }
 
-GatherPass::Surroundings GatherPass::around(int x, int y, uint32_t r, Part part,
+GatherFits::Surroundings GatherFits::around(int x, int y, uint32_t r, Part part,
                                             Asked asked) const {
-  const GatherRecord& at = out_.records_[r];
+  const GatherRecord& at = records_.all()[r];
   float nearness = 0, bright_nearness = 0, light = 0, rays = 0, variance = 0, records = 0;
   for (int j = y - 2; j <= y + 2; ++j)
     for (int i = x - 2; i <= x + 2; ++i)
-      out_.of_pixel(i, j, [&](uint32_t o) {
-        const GatherRecord& n = out_.records_[o];
+      records_.of_pixel(i, j, [&](uint32_t o) {
+        const GatherRecord& n = records_.all()[o];
         if (asked == Asked::other_half && half_of(i, j) == half_of(x, y)) return;
         if (n.rays == 0 || !is_neighbour(r, o, part)) return;
         const GatherSums& sums = n.*part;
@@ -127,15 +126,15 @@ GatherPass::Surroundings GatherPass::around(int x, int y, uint32_t r, Part part,
 // Returns the stride at which a fit reads pixels. Under thinning all records that matter must be
 // met: from the lattice the stride is even, so only lattice pixels are read. From elsewhere it is
 // odd, so all four lattices take turns.
-int GatherPass::step_of(int x, int y, int step) const {
+int GatherFits::step_of(int x, int y, int step) const {
   if (step <= 1) return 1;
   if (!is_thinned_) return step;
   return is_on_lattice(x, y) ? (step + 1) / 2 * 2 : step | 1;
 }
 
-LinearFit GatherPass::fit(int x, int y, uint32_t r, Part part, float radius, int along,
+LinearFit GatherFits::fit(int x, int y, uint32_t r, Part part, float radius, int along,
                           Asked asked) const {
-  const GatherRecord& at = out_.records_[r];
+  const GatherRecord& at = records_.all()[r];
   const int pixels = std::clamp(int(std::ceil(radius / at.spacing)), 1, most_pixels);
   const int step = step_of(x, y, pixels / along);
   const Frame frame(at.hit.horizon);
@@ -145,11 +144,11 @@ LinearFit GatherPass::fit(int x, int y, uint32_t r, Part part, float radius, int
     for (int i = -pixels / step; i <= pixels / step; ++i) {
       if (asked == Asked::other_half && half_of(x + i * step, y + j * step) == half_of(x, y))
         continue;
-      out_.of_pixel(x + i * step, y + j * step, [&](uint32_t o) {
-        const GatherRecord& n = out_.records_[o];
+      records_.of_pixel(x + i * step, y + j * step, [&](uint32_t o) {
+        const GatherRecord& n = records_.all()[o];
         const Vec3 d = (n.hit.position - at.hit.position) * scale;
         const float d2 = length_squared(d);
-        if (d2 >= 1 || (beside_[o] != 0 && o != r) || !is_neighbour(r, o, part)) return;
+        if (d2 >= 1 || (behind_edge_[o] != 0 && o != r) || !is_neighbour(r, o, part)) return;
         sums.add(dot(d, frame.tangent), dot(d, frame.bitangent), 1 - d2,
                  n.rays / usual_rays_[o] * usual_rays_[r] / unit, (n.*part).sum / n.rays);
       });
@@ -159,7 +158,7 @@ LinearFit GatherPass::fit(int x, int y, uint32_t r, Part part, float radius, int
 
 // With few neighbours the residual of a fit underestimates the variance, so the variance of their
 // rays is a lower bound.
-FittedLight GatherPass::solved(const LinearFit& fit, const Surroundings& s) {
+FittedLight GatherFits::solved(const LinearFit& fit, const Surroundings& s) {
   constexpr int enough = 12;
   FittedLight light;
   fit.solve(light);
@@ -170,7 +169,7 @@ FittedLight GatherPass::solved(const LinearFit& fit, const Surroundings& s) {
 // Returns the allowed error of the luminance of one of the record's sums, from all light that the
 // pixel sees there. around: luminance of that sum by its surroundings. By the record's own few
 // rays, bright records would get few further rays and the dark ones beside them many.
-float GatherPass::allowed_error(const GatherRecord& r, Part part, float around) const {
+float GatherFits::allowed_error(const GatherRecord& r, Part part, float around) const {
   const Part other = part == &GatherRecord::matte ? &GatherRecord::gloss : &GatherRecord::matte;
   const float own =
       around * (r.*part).weight + luminance((r.*other).sum) * (r.*other).weight / r.rays;
@@ -181,8 +180,8 @@ float GatherPass::allowed_error(const GatherRecord& r, Part part, float around) 
 // Returns the number of further rays of a record, decided by what the other half of the pixels has
 // met. If its own rays took part, records that happened to miss a small bright thing would get no
 // more rays. Only those that met it would be corrected. The picture would become too dark.
-uint32_t GatherPass::further_rays(int x, int y, uint32_t r, Part part) const {
-  const GatherRecord& at = out_.records_[r];
+uint32_t GatherFits::further_rays(int x, int y, uint32_t r, Part part) const {
+  const GatherRecord& at = records_.all()[r];
   Surroundings s = around(x, y, r, part, Asked::other_half);
   const bool are_others = s.records > 0;
   if (!are_others) s = around(x, y, r, part);
@@ -201,10 +200,16 @@ uint32_t GatherPass::further_rays(int x, int y, uint32_t r, Part part) const {
   return uint32_t(rays / 4 + 0.999) * 4;
 }
 
+uint32_t GatherFits::further_rays(int x, int y, uint32_t r) const {
+  const uint32_t matte = further_rays(x, y, r, &GatherRecord::matte);
+  if (!records_.all()[r].place.is_there()) return matte;
+  return std::max(matte, further_rays(x, y, r, &GatherRecord::gloss));
+}
+
 // Fits one of the sums, over no larger radius than its noise needs. Returns the harmonic mean
 // distance of what is around.
-float GatherPass::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) const {
-  const GatherRecord& at = out_.records_[r];
+float GatherFits::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) const {
+  const GatherRecord& at = records_.all()[r];
   const Surroundings s = around(x, y, r, part);
   const float distance = 1 / std::max(s.nearness, 1e-20f);
   const float least = least_pixels * at.spacing, most = most_pixels * at.spacing;
@@ -234,14 +239,14 @@ float GatherPass::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) 
 }
 
 // Returns the rays of a pixel that gathers for itself.
-float GatherPass::own_rays(int x, int y, uint32_t r, Part part) const {
-  const GatherRecord& at = out_.records_[r];
+float GatherFits::own_rays(int x, int y, uint32_t r, Part part) const {
+  const GatherRecord& at = records_.all()[r];
   return unit * around(x, y, r, part).variance /
          sqr(allowed_error(at, part, luminance((at.*part).sum) / at.rays));
 }
 
-FittedRecord GatherPass::fitted(int x, int y, uint32_t r) const {
-  const GatherRecord& at = out_.records_[r];
+FittedRecord GatherFits::fitted(int x, int y, uint32_t r) const {
+  const GatherRecord& at = records_.all()[r];
   FittedRecord f;
   Fitted matte, gloss;
   float distance = fit_part(x, y, r, &GatherRecord::matte, matte);
@@ -254,7 +259,7 @@ FittedRecord GatherPass::fitted(int x, int y, uint32_t r) const {
   // Away from its record, the error of a fit goes with the square of the distance.
   const float reach =
       std::min(reach_of_error * std::sqrt(float(options_.error)), most_reach) * distance;
-  f.is_alone = beside_[r] != 0 || matte.is_one_sided || gloss.is_one_sided;
+  f.is_alone = behind_edge_[r] != 0 || matte.is_one_sided || gloss.is_one_sided;
   f.reach = at.spacing > reach || f.is_alone ? 0 : reach;
   f.rays = std::min(std::max(own_rays(x, y, r, &GatherRecord::matte),
                              at.place.is_there() ? own_rays(x, y, r, &GatherRecord::gloss) : 0.0f),

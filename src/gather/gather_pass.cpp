@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "base/streams.h"
 #include "gather/gather_lobe.h"
+#include "gather/gather_thinning.h"
 
 namespace troffer {
 
@@ -53,7 +54,10 @@ GatherPass::GatherPass(const Cells& cells, const PictureView& view, const Gather
       options_(options),
       stop_(stop),
       out_(out),
-      workers_(size_t(thread_count(options.threads))) {}
+      workers_(size_t(thread_count(options.threads))),
+      is_thinned_(has_close_pixels(cells, view, options.seed, workers_[0].viewing,
+                                   workers_[0].cells, workers_[0].counters)),
+      fits_(out, options, is_thinned_) {}
 
 bool GatherPass::over_tiles(std::vector<Tile>& tiles, SharedWork work, Counters& counters) {
   work.items = tiles.size();
@@ -132,27 +136,25 @@ bool GatherPass::run(const std::function<void(double)>& progress, Counters& coun
   const auto tell = [&](double share) {
     if (progress) progress(share);
   };
-  is_thinned_ = has_close_pixels(workers_[0]);
   if (!see_all(tiles, counters)) return false;
   tell(0.3);
   join(tiles);
-  beside_.resize(out_.records_.size());
-  if (!for_records(tiles, counters, beside_,
-                   [&](int x, int y, uint32_t r) { return uint8_t(is_beside(x, y, r)); }))
+  std::vector<uint8_t>& behind_edge = fits_.behind_edge();
+  behind_edge.resize(out_.records_.size());
+  if (!for_records(tiles, counters, behind_edge, [&](int x, int y, uint32_t r) {
+        return uint8_t(fits_.is_behind_edge(x, y, r));
+      }))
     return false;
   if (is_thinned_ && !thin(tiles, counters)) return false;
   wanted_.assign(out_.records_.size(), 0);
-  usual_rays_.assign(out_.records_.size(), float(first_rays));
-  if (!for_records(tiles, counters, wanted_, [&](int x, int y, uint32_t r) {
-        const uint32_t matte = further_rays(x, y, r, &GatherRecord::matte);
-        if (!out_.records_[r].place.is_there()) return matte;
-        return std::max(matte, further_rays(x, y, r, &GatherRecord::gloss));
-      }))
+  fits_.usual_rays().assign(out_.records_.size(), float(GatherFits::first_rays));
+  if (!for_records(tiles, counters, wanted_,
+                   [&](int x, int y, uint32_t r) { return fits_.further_rays(x, y, r); }))
     return false;
   tell(0.4);
   if (!gather_wanted(tiles, Rays::further, counters)) return false;
-  if (!for_records(tiles, counters, usual_rays_,
-                   [&](int x, int y, uint32_t r) { return usual_rays(x, y, r); }))
+  if (!for_records(tiles, counters, fits_.usual_rays(),
+                   [&](int x, int y, uint32_t r) { return fits_.usual_rays(x, y, r); }))
     return false;
   tell(0.8);
   for (const Tile& t : tiles) {
@@ -161,16 +163,26 @@ bool GatherPass::run(const std::function<void(double)>& progress, Counters& coun
   }
   out_.fitted_.resize(out_.records_.size());
   return for_records(tiles, counters, out_.fitted_,
-                     [&](int x, int y, uint32_t r) { return fitted(x, y, r); });
+                     [&](int x, int y, uint32_t r) { return fits_.fitted(x, y, r); });
 }
 
-// Returns the ray through the middle of a pixel. spread: distance to the next pixel's ray, per
-// metre along it.
-Ray GatherPass::ray_of(int x, int y, float& spread) const {
-  const float u = float(x) + 0.5f, v = float(y) + 0.5f;
-  const Ray ray = view_.ray(u, v), beside = view_.ray(u + 1, v);
-  spread = length(beside.direction - ray.direction) + length(beside.origin - ray.origin);
-  return ray;
+// Leaves out redundant records, and gathers first rays at remaining records without any.
+bool GatherPass::thin(std::vector<Tile>& tiles, Counters& counters) {
+  std::vector<uint8_t> flags(out_.records_.size());
+  if (!for_records(tiles, counters, flags, [&](int x, int y, uint32_t r) {
+        return uint8_t(is_redundant(out_, fits_, x, y, r));
+      }))
+    return false;
+  out_.leave_out(flags);
+  std::vector<uint8_t>& behind_edge = fits_.behind_edge();
+  size_t kept = 0;
+  for (size_t r = 0; r < flags.size(); ++r)
+    if (flags[r] == 0) behind_edge[kept++] = behind_edge[r];
+  behind_edge.resize(kept);
+  wanted_.resize(out_.records_.size());
+  for (size_t r = 0; r < wanted_.size(); ++r)
+    wanted_[r] = out_.records_[r].rays == 0 ? GatherFits::first_rays : 0;
+  return gather_wanted(tiles, Rays::first, counters);
 }
 
 // Finds the matte surfaces that the tile's pixels see, and gathers at each, or under thinning at
@@ -182,7 +194,7 @@ void GatherPass::see(Tile& tile, Worker& w) const {
   for (int y = tile.pixels.y0; y < tile.pixels.y1; ++y)
     for (int x = tile.pixels.x0; x < tile.pixels.x1; ++x) {
       Walk walk;
-      walk.ray = ray_of(x, y, spreads.emplace_back());
+      walk.ray = view_.pixel_ray(x, y, spreads.emplace_back());
       walk.index = uint32_t(g.walks.size());
       walk.stream = hash_of(options_.seed, uint64_t(x), uint64_t(y), stream::gather_records);
       g.walks.push_back(walk);
@@ -208,7 +220,7 @@ void GatherPass::see(Tile& tile, Worker& w) const {
     places.push_back(on_curve(uint32_t(x - tile.x), uint32_t(y - tile.y)) |
                      uint32_t(tile.counts[a.walk.index]++) << 8);
   }
-  std::vector<uint32_t> counts(tile.records.size(), first_rays);
+  std::vector<uint32_t> counts(tile.records.size(), GatherFits::first_rays);
   if (is_thinned_)
     for (size_t r = 0; r < counts.size(); ++r)
       if (class_of(places[r]) != 0) counts[r] = 0;
@@ -253,7 +265,7 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
       walk.index = uint32_t(owners.size());
       walk.stream = hash_of(options_.seed, uint64_t(tile.x), uint64_t(tile.y), places[r] >> 8,
                             uint32_t(is_further) | lattice << 1);
-      walk.sample = place * (is_further ? most_rays : first_rays) + k;
+      walk.sample = place * (is_further ? GatherFits::most_rays : GatherFits::first_rays) + k;
       owners.push_back(r);
       weights.push_back(set_out(records[r].hit, aim, lobe, walk));
       directions.push_back(walk.ray.direction);

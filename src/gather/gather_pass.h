@@ -2,24 +2,17 @@
 // are first gathers, thinning, further rays and fits, each over the whole picture before the next.
 // Tiles are shared by threads and processes; the result does not depend on either. Where pixels are
 // closer together than light changes, every second pixel of every second row has a record
-// (gather_thinning.cpp).
+// (gather_thinning.h).
 #pragma once
 
 #include <vector>
 
-#include "cells/linear_fit.h"
-#include "gather/gather_records.h"
+#include "gather/gather_fits.h"
 
 namespace troffer {
 
 class GatherPass {
  public:
-  static constexpr int most_pixels = 16;                      // radius of a fit
-  static constexpr int usual_pixels = 5;                      // radius of usual_rays()
-  static constexpr uint32_t first_rays = 8, most_rays = 512;  // of a record
-  // Radius within which light is nearly linear, in harmonic mean distances.
-  static constexpr float near_radius = 0.06f;
-
   GatherPass(const Cells& cells, const PictureView& view, const GatherOptions& options,
              const StopFlag& stop, GatherRecords& out);
   bool run(const std::function<void(double)>& progress, Counters& counters);
@@ -38,50 +31,15 @@ class GatherPass {
     CellsScratch cells;
     Counters counters;
   };
-  // One of a record's two sums: irradiance or gloss.
-  using Part = GatherSums GatherRecord::*;
-  // Means over the records around one.
-  struct Surroundings {
-    float nearness = 0;  // mean of 1 / distance, 1/m
-    float variance = 0;  // of a gather of 16 rays, by the spread of rays
-    float records = 0;   // number of records averaged
-  };
-  // Fit of one sum.
-  struct Fitted {
-    Rgb value;
-    // Estimated error of the luminance of `value`.
-    float error = 0;
-    bool is_one_sided = false;  // mean of neighbours that lie to one side
-  };
-  // Choice of the records around one that are read.
-  enum class Asked : uint8_t { all, other_half };
   // Choice of the rays of a record that are gathered.
   enum class Rays : uint8_t { first, further };
 
-  bool has_close_pixels(Worker& w) const;
   bool thin(std::vector<Tile>& tiles, Counters& counters);
-  bool is_redundant(int x, int y, uint32_t r) const;
-  void leave_out(const std::vector<uint8_t>& is_left_out);
   void see(Tile& tile, Worker& w) const;
-  Ray ray_of(int x, int y, float& spread) const;
   void gather(std::vector<GatherRecord>& records, const std::vector<uint32_t>& counts,
               const Tile& tile, const std::vector<uint32_t>& places, Rays which, Worker& w,
               GuidingStatistics* tally = nullptr) const;
   void join(std::vector<Tile>& tiles);
-  bool is_beside(int x, int y, uint32_t r) const;
-  float usual_rays(int x, int y, uint32_t r) const;
-  bool is_neighbour(uint32_t at, uint32_t other, Part part) const;
-  Surroundings around(int x, int y, uint32_t r, Part part, Asked asked = Asked::all) const;
-  static bool is_on_lattice(int x, int y) { return ((x | y) & 1) == 0; }
-  int step_of(int x, int y, int step) const;
-  LinearFit fit(int x, int y, uint32_t r, Part part, float radius, int along,
-                Asked asked = Asked::all) const;
-  static FittedLight solved(const LinearFit& fit, const Surroundings& s);
-  float allowed_error(const GatherRecord& r, Part part, float around) const;
-  uint32_t further_rays(int x, int y, uint32_t r, Part part) const;
-  float fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) const;
-  float own_rays(int x, int y, uint32_t r, Part part) const;
-  FittedRecord fitted(int x, int y, uint32_t r) const;
   void gather_wanted(const Tile& tile, Rays which, Worker& w);
   // work: complete except for the numbers of tiles and threads.
   bool over_tiles(std::vector<Tile>& tiles, SharedWork work, Counters& counters);
@@ -99,11 +57,9 @@ class GatherPass {
   const StopFlag& stop_;
   GatherRecords& out_;
   std::vector<Worker> workers_;
-  bool is_thinned_ = false;       // records between lattice pixels may be missing
-  std::vector<uint8_t> beside_;   // per record: is_beside()
+  bool is_thinned_;               // records between lattice pixels may be missing
+  GatherFits fits_;               // over out_
   std::vector<uint32_t> wanted_;  // per record: rays to be gathered next
-  // Per record: usual_rays().
-  std::vector<float> usual_rays_;
 };
 
 // Calls visit(x, y, record) for all records of a tile.

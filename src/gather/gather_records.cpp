@@ -19,6 +19,26 @@ bool is_one_surface(const CellHit& a, const CellHit& b, float spacing) {
   return off <= flat + bend;
 }
 
+Ray PictureView::pixel_ray(int x, int y, float& spread) const {
+  const float u = float(x) + 0.5f, v = float(y) + 0.5f;
+  const Ray at = ray(u, v), next = ray(u + 1, v);
+  spread = length(next.direction - at.direction) + length(next.origin - at.origin);
+  return at;
+}
+
+void GatherRecords::leave_out(const std::vector<uint8_t>& flags) {
+  uint32_t kept = 0, from = 0;
+  for (size_t p = 0; p + 1 < first_.size(); ++p) {
+    const uint32_t end = first_[p + 1];
+    first_[p] = kept;
+    for (; from < end; ++from)
+      if (flags[from] == 0) records_[kept++] = records_[from];
+  }
+  first_.back() = kept;
+  records_.resize(kept);
+  records_.shrink_to_fit();
+}
+
 std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const PictureView& view,
                                                    const GatherOptions& options,
                                                    const std::function<void(double)>& progress,
@@ -26,7 +46,7 @@ std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const Pic
   // A pixel reads its neighbours' fits. These read gathers within most_pixels, whose further rays
   // follow from gathers as far again, and usual_rays() around them. The rest is for lookups and
   // thinning.
-  constexpr int border = 2 * GatherPass::most_pixels + GatherPass::usual_pixels + 7;
+  constexpr int border = 2 * GatherFits::most_pixels + GatherFits::usual_pixels + 7;
   // The window grows to whole tiles of the picture, so that a tile's rays are the same for every
   // window.
   constexpr int side = tile_side;

@@ -30,6 +30,9 @@ struct PixelWindow {
 struct PictureView {
   PixelWindow image, window;                 // the whole picture, and the part to be made
   std::function<Ray(float x, float y)> ray;  // ray through a point of the picture, in pixels
+  // Returns the ray through the middle of a pixel. spread: distance to the next pixel's ray, per
+  // metre along it.
+  Ray pixel_ray(int x, int y, float& spread) const;
 };
 
 struct GatherOptions {
@@ -108,9 +111,7 @@ class GatherRecords {
            (visible_.capacity() + rest_.capacity()) * sizeof(float);
   }
 
- private:
-  friend class GatherPass;
-  GatherRecords(const PixelWindow& window) : window_(window) {}
+  const std::vector<GatherRecord>& all() const { return records_; }
   // Calls visit(record) for every record of a pixel.
   template <class Visit>
   void of_pixel(int x, int y, const Visit& visit) const {
@@ -118,6 +119,12 @@ class GatherRecords {
     const size_t p = size_t(y - window_.y0) * size_t(window_.width()) + size_t(x - window_.x0);
     for (uint32_t r = first_[p]; r < first_[p + 1]; ++r) visit(r);
   }
+
+ private:
+  friend class GatherPass;
+  GatherRecords(const PixelWindow& window) : window_(window) {}
+  // Removes the records with a flag and renumbers the others.
+  void leave_out(const std::vector<uint8_t>& flags);
 
   PixelWindow window_;
   std::vector<uint32_t> first_;  // first record of each pixel, and the end

@@ -330,7 +330,7 @@ TEST_CASE("certified: a point on a polygon of many corners belongs to one of its
   s.meshes[mesh].lights.assign(triangles, 0);
   for (uint32_t t = 2; t < triangles; ++t) s.lights[0].triangles.push_back(t);
   const PreparedScene scene(std::move(s));
-  const CertifiedLights lights(scene, {}, 32);
+  const CertifiedSources lights(scene, false, 32);
   REQUIRE(lights.has(0));
   const CertifiedSource* square = lights.source_of(0, false, {0.5f, 0.5f, 2});
   const CertifiedSource* arc = lights.source_of(0, false, {0.5f, -0.15f, 2});
