@@ -12,7 +12,7 @@ namespace troffer {
 namespace {
 
 int passes_of(int samples) {
-  return (samples + samples_per_batch - 1) / samples_per_batch;
+  return (samples + samples_per_pass - 1) / samples_per_pass;
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace troffer {
 
 // Samples of a pixel per batch. With a tile's pixels this gives about a thousand paths: long enough
 // for ray packets, short enough for the second-level cache.
-constexpr int samples_per_batch = 4;
+constexpr int samples_per_pass = 4;
 
 // Plan of one pixel, as in checkpoints and messages: viewing rays in total, surrogate samples, and
 // the effort divisor of viewing rays after the first pass (SampleRequest::effort_divisor).

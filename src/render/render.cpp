@@ -44,7 +44,7 @@ void check_camera(const ViewingCamera& camera, const PixelRect& window, const Pr
 // Returns a tile size at which a tile does not need too many shadow rays.
 int tile_side(Method method, const MethodSettings& settings, size_t lights) {
   const MethodRow& row = method.row();
-  const double per_pixel = samples_per_batch * row.rays_per_sample(settings, lights);
+  const double per_pixel = samples_per_pass * row.rays_per_sample(settings, lights);
   int side = row.widest_tile;
   while (side > 1 && per_pixel * side * side > row.most_rays_per_tile) side /= 2;
   return side;

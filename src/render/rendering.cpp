@@ -69,9 +69,9 @@ RenderEnd Rendering::first_pass() {
   for (uint32_t pass = 0; pass < all.first; pass += at_a_time) {
     step({pass, pass + at_a_time}, all_tiles(),
          [&](uint32_t n, const PixelRect& tile, TileWork& w) {
-           const int first = int(n) * samples_per_batch;
+           const int first = int(n) * samples_per_pass;
            tracer_.first_pass(
-               tile, uint32_t(std::min(samples_per_batch, further_.first_spp() - first)), w);
+               tile, uint32_t(std::min(samples_per_pass, further_.first_spp() - first)), w);
            return true;
          });
     if (progress_.was_stopped) return RenderEnd::stopped;
@@ -99,7 +99,7 @@ RenderEnd Rendering::refine_by_passes() {
   for (uint32_t pass = 0; pass < all.further; pass += at_a_time) {
     const uint32_t begin = all.first + pass, end = begin + at_a_time;
     step({begin, end}, all_tiles(), [&](uint32_t number, const PixelRect& tile, TileWork& w) {
-      const int first = further_.first_spp() + int(number - all.first) * samples_per_batch;
+      const int first = further_.first_spp() + int(number - all.first) * samples_per_pass;
       tracer_.further_pass(tile, first, w);
       return true;
     });

@@ -89,7 +89,7 @@ bool RenderingArchive::restore_plan(ByteReader in) {
 bool RenderingArchive::is_as_expected(uint32_t steps, int x, int y) const {
   const TileSteps& all = further_.steps();
   const auto first = uint32_t(further_.first_spp());
-  uint32_t samples = std::min(first, steps * samples_per_batch), surrogates = 0;
+  uint32_t samples = std::min(first, steps * samples_per_pass), surrogates = 0;
   if (steps > all.first) {
     const WantedPixel& wanted = further_.at(x, y);
     const uint32_t more = steps - all.first;
@@ -97,7 +97,7 @@ bool RenderingArchive::is_as_expected(uint32_t steps, int x, int y) const {
       surrogates = wanted.surrogates;
       if (more > all.surrogates) samples = wanted.samples;
     } else {
-      samples = std::min(wanted.samples, first + more * samples_per_batch);
+      samples = std::min(wanted.samples, first + more * samples_per_pass);
     }
   }
   return film_.estimate(x, y).samples == samples && film_.surrogates(x, y) == surrogates;

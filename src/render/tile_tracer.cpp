@@ -72,7 +72,7 @@ void TileTracer::first_pass(const PixelRect& tile, uint32_t count, TileWork& w) 
 
 void TileTracer::further_pass(const PixelRect& tile, int first, TileWork& w) {
   for (const Pixel2& p : pixels_in_order(tile)) {
-    const int count = std::min(samples_per_batch, int(further_.at(p.x, p.y).samples) - first);
+    const int count = std::min(samples_per_pass, int(further_.at(p.x, p.y).samples) - first);
     if (count <= 0) continue;
     add_rays(p, uint32_t(count), w);
     w.rays.neighbours.resize(w.rays.size(), further_.records()->around(p.x, p.y));

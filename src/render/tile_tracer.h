@@ -43,7 +43,7 @@ class TileTracer {
   void begin(TileWork& w) const;
   // Traces the next `count` samples of all pixels.
   void first_pass(const PixelRect& tile, uint32_t count, TileWork& w);
-  // Traces up to samples_per_batch further rays of each pixel that wants more than `first` samples,
+  // Traces up to samples_per_pass further rays of each pixel that wants more than `first` samples,
   // next to the records of its neighbours (kj92).
   void further_pass(const PixelRect& tile, int first, TileWork& w);
   // Traces all further rays of a tile. Returns false if it was stopped before the end.
