@@ -67,7 +67,7 @@ class Target {
   void run(const std::string& lines) const {
     LayerBoard board;
     MeasuringQueue desk(measuring_);
-    Painter painter(board, settings_.options, nullptr);
+    Painter painter(board, settings_.options);
     ViewService service(lighting_, settings_, board, painter, desk);
     constexpr int most = 16;  // the measuring queue allows four times as many waiting tasks
     std::istringstream in(lines);

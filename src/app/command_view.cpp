@@ -71,7 +71,6 @@ void add_view(CLI::App& app, ViewCommand& c) {
       ->capture_default_str();
   add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
-  s->add_option("--tev", c.tev, "Address of a tev image viewer that shows the pictures too");
   add_threads(*s, c.threads);
   add_seed(*s, c.seed);
   s->add_flag("--quiet", c.is_quiet, "No warnings");
@@ -118,7 +117,6 @@ int run_view(const ViewCommand& c) {
   }
   ViewStart start;
   start.port = uint16_t(c.port);
-  start.tev = c.tev;
   start.has_camera = !scene.cameras.empty();
   start.tell = [](const std::string& address) {
     fmt::print("{}\n", address);

@@ -119,7 +119,6 @@ struct ViewCommand {
   double error = 0.02;
   std::vector<std::string> lights;
   DaylightOptions daylight;
-  std::string tev;  // HOST:PORT, or empty
   int threads = 0;
   uint64_t seed = 0;
   bool is_quiet = false;

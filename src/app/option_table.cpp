@@ -70,7 +70,6 @@ constexpr std::array rows{
     OptionRow{"--fov", view, "DEGREES", ""},
     OptionRow{"--crop", view, "X0,Y0,X1,Y1", ""},
     OptionRow{"--port", view, "PORT", ""},
-    OptionRow{"--tev", view, "HOST:PORT", ""},
     // Light
     OptionRow{"--light", light, "NAME,…", ""},
     OptionRow{"--luminaire", light, "NODE=FILE[,LUMENS[,KELVIN]]", photometry},

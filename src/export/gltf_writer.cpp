@@ -176,7 +176,8 @@ void GltfWriter::add_light(const Light& e) {
   } else if (e.kind == LightKind::point || e.kind == LightKind::spot) {
     light["type"] = e.kind == LightKind::point ? "point" : "spot";
     if (e.range > 0) light["range"] = e.range;
-    if (e.range < 0) warnings_.add("the focal distance of spotlights is left out: glTF has none");
+    if (e.focal_distance > 0)
+      warnings_.add("the focal distance of spotlights is left out: glTF has none");
   } else {
     if (!has_surface(e.kind))
       warnings_.add(std::string("a light of kind '") + name_of(e.kind) +

@@ -186,7 +186,9 @@ std::string Writer::text(const Light& e) {
     out += fmt::format("{} {} {} {}{}", i == 0 ? " \"point3 portal\" [" : "", p.x, p.y, p.z,
                        i + 1 == e.portal.size() ? " ]" : "");
   }
-  if (e.range != 0) warnings_.add("the range of lights is left out: pbrt has none");
+  if (e.range > 0) warnings_.add("the range of lights is left out: pbrt has none");
+  if (e.focal_distance > 0)
+    warnings_.add("the focal distance of spotlights is left out: pbrt has none");
   // Axes of the image, if there is one.
   const bool has_axes =
       (e.kind == LightKind::environment && e.environment >= 0) || e.kind == LightKind::sky;

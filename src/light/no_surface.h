@@ -37,9 +37,9 @@ struct NoSurface {
     p.bounds.grow(position);
   }
 
-  // Samples a point light at e.position with radiant intensity `intensity` towards x. A positive
-  // range fades it by 1 - (distance / range)^4 [1]. A negative range is a focal distance f =
-  // -range: light falls off by 1 / (distance + f)², as behind a reflector (Radiance's spotlight).
+  // Samples a point light at e.position with radiant intensity `intensity` towards x. A range fades
+  // it by 1 - (distance / range)^4 [1]. With a focal distance f it falls off by
+  // 1 / (distance + f)², as behind a reflector (Radiance's spotlight).
   static bool sample_point(const Light& e, const Vec3& x, Rgb intensity, LightSample& out) {
     const Vec3 to_point = e.position - x;
     const float d2 = length_squared(to_point);
@@ -49,7 +49,7 @@ struct NoSurface {
     out.point = e.position;
     out.distance = std::sqrt(d2);
     out.wi = to_point * (1 / out.distance);
-    const float falloff = e.range < 0 ? sqr(out.distance - e.range) : d2;
+    const float falloff = e.focal_distance > 0 ? sqr(out.distance + e.focal_distance) : d2;
     out.radiance = intensity * (share / falloff);
     out.pdf_solid_angle = 1;
     out.is_delta = true;

@@ -79,9 +79,12 @@ struct Light {
   // point with a texture: irradiance on a plane across the axis is proportional to the picture.
   // The intensity at angle a from the axis is divided by cos³ a (Mitsuba's projector).
   bool has_uniform_plane = false;
-  // point, spot, m. Above 0: distance where the light has faded to nothing. Below 0: minus the
-  // focal distance of Radiance's spotlight. 0: inverse square without limit (light/no_surface.h).
+  // point, spot, m: distance where the light has faded to nothing; 0: no limit
+  // (light/no_surface.h).
   float range = 0;
+  // point, spot, m: the light falls off as if it stood this far behind its position (Radiance's
+  // spotlight).
+  float focal_distance = 0;
 
   int32_t environment = no_environment;  // environment, point: index into Scene::environments
   SkyShape sky;                          // sky
@@ -119,6 +122,7 @@ void for_each_value(const Light& e, const Visit& visit) {
   visit(e.cos_outer);
   visit(uint64_t(e.falloff));
   visit(e.range);
+  visit(e.focal_distance);
   visit(uint64_t(e.environment));
   for (const float f : {e.sky.a, e.sky.b, e.sky.c, e.sky.d, e.sky.e, e.sky.k}) visit(f);
   visit(e.sky.ground);

@@ -38,8 +38,8 @@ const Image* layer_named(const RenderResult& r, const char* name) {
 
 }  // namespace
 
-Painter::Painter(LayerBoard& board, const RenderOptions& options, Shown shown)
-    : board_(board), options_(options), shown_(std::move(shown)), thread_([this] { run(); }) {}
+Painter::Painter(LayerBoard& board, const RenderOptions& options)
+    : board_(board), options_(options), thread_([this] { run(); }) {}
 
 Painter::~Painter() {
   {
@@ -330,7 +330,6 @@ void Painter::put(const Orders& orders, const Work& work, const Image& image, do
     orders_.may_cancel = true;
     if (orders_.number != orders.number) cancel_ = true;
   }
-  if (is_whole && shown_) shown_(image);
 }
 
 // Describes the work for the page's status line.

@@ -55,14 +55,12 @@ struct PaintingState {
   std::string failure;          // why there is no picture; empty: no failure
 };
 
-// Renders views. Fourteen members: its environment, orders from other threads, and work in
+// Renders views. Thirteen members: its environment, orders from other threads, and work in
 // progress. Public functions are thread-safe.
 class Painter {
  public:
-  using Shown = std::function<void(const Image&)>;
-  // options: method, error, seed, threads. The board must outlive the painter. shown: called with
-  // every picture under all light; may be null.
-  Painter(LayerBoard& board, const RenderOptions& options, Shown shown);
+  // options: method, error, seed, threads. The board must outlive the painter.
+  Painter(LayerBoard& board, const RenderOptions& options);
   ~Painter();
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
@@ -122,7 +120,6 @@ class Painter {
 
   LayerBoard& board_;
   const RenderOptions options_;
-  const Shown shown_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   Orders orders_;  // guarded by the mutex

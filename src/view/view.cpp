@@ -5,14 +5,11 @@
 #include <thread>
 
 #include "render/framing.h"
-#include "view/tev_client.h"
 #include "view/token.h"
 
 namespace troffer {
 
 bool view(Scene scene, ViewSettings settings, const ViewStart& start, const StopFlag& stop) {
-  std::unique_ptr<TevClient> tev;
-  if (!start.tev.empty()) tev = std::make_unique<TevClient>(start.tev);
   const auto lighting = std::make_shared<Lighting>(std::move(scene));
   if (!start.has_camera) settings.camera = framing_camera(*lighting->whole(), settings.up);
   MeasureOptions measuring;
@@ -21,12 +18,10 @@ bool view(Scene scene, ViewSettings settings, const ViewStart& start, const Stop
   measuring.error = settings.options.error;
   measuring.threads = settings.options.threads;
   measuring.seed = settings.options.seed;
-  Painter::Shown shown;
-  if (tev) shown = [&](const Image& image) { tev->show(image); };
   LayerBoard board;
-  MeasuringQueue desk(measuring);
-  Painter painter(board, settings.options, shown);
-  ViewService service(lighting, settings, board, painter, desk);
+  MeasuringQueue queue(measuring);
+  Painter painter(board, settings.options);
+  ViewService service(lighting, settings, board, painter, queue);
   HttpServer server(start.port, random_token(),
                     [&](const HttpRequest& request) { return service.answer(request); });
   start.tell(server.address());

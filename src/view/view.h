@@ -11,14 +11,13 @@ namespace troffer {
 // Settings for the start of the page.
 struct ViewStart {
   uint16_t port = 0;        // 0: any free port
-  std::string tev;          // HOST:PORT of a tev that also gets the pictures; empty: none
   bool has_camera = false;  // ViewSettings::camera is set; otherwise one is placed
   // Called with the page's address once it is served.
   std::function<void(const std::string& address)> tell;
 };
 
 // Serves the page until the page asks to close (returns true) or `stop` is set (returns false).
-// Throws EnvironmentError if the port or tev is not available.
+// Throws EnvironmentError if the port is not available.
 bool view(Scene scene, ViewSettings settings, const ViewStart& start, const StopFlag& stop);
 
 }  // namespace troffer

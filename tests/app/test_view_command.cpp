@@ -96,7 +96,5 @@ TEST_CASE("view refuses what it cannot show, before any page is there") {
   CHECK(run({scene, "--size", "10x10x"}) == 2);
   CHECK(run({scene, "--error", "nan"}) == 2);
   CHECK(run({scene, "--method", "magic"}) == 2);
-  CHECK(run({scene, "--tev", "nobody"}) != 0);
-  CHECK(run({scene, "--tev", "127.0.0.1:x"}) == 2);
   CHECK(run({scene, "--at", "48,16,yesterday"}) == 2);
 }

@@ -101,7 +101,7 @@ TEST_CASE("spotlight: its focal distance, its beam, whatever surface it is on") 
       const Light& e = scene.lights[0];
       CHECK(is_near(e.position, {0, 0, 3}));
       CHECK(e.radiance.r == doctest::Approx(1000 * (is_ring ? pi * .04 : .04)));
-      CHECK(double(-e.range) == doctest::Approx(f));
+      CHECK(double(e.focal_distance) == doctest::Approx(f));
       const LightWeb& web = scene.webs.at(size_t(e.web));
       // The cosine up to 15 degrees, and zero beyond.
       CHECK(double(web.vertical_angles_rad.back()) == doctest::Approx(rad_from_deg(15)));

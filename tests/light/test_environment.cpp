@@ -240,10 +240,10 @@ TEST_CASE("a range fades a point, and glTF's spots fade by a square") {
   REQUIRE(sample(s, lights[0], {2, 0, 0}, {}, at));
   CHECK(double(at.radiance.r) == doctest::Approx(2 * (1 - 1 / 16.0)));
   CHECK_FALSE(sample(s, lights[0], {4, 0, 0}, {}, at));
-  // A negative range is a focal distance, here 1: 8 / (3 + 1)².
+  // A focal distance of 1: 8 / (3 + 1)².
   Scene focused;
   add_point(focused, {0, 0, 0}, Rgb{8});
-  focused.lights[0].range = -1;
+  focused.lights[0].focal_distance = 1;
   const LightPrimitives focused_lights(focused);
   REQUIRE(sample(focused, focused_lights[0], {3, 0, 0}, {}, at));
   CHECK(double(at.radiance.r) == doctest::Approx(0.5));

@@ -67,7 +67,7 @@ double rms_difference(const Image& a, const Image& b) {
 TEST_CASE("layers by single luminaires add up to the picture by all, after any move") {
   const auto lighting = std::make_shared<Lighting>(room());
   LayerBoard board;
-  Painter painter(board, options(), nullptr);
+  Painter painter(board, options());
   painter.show(request_of(lighting));
   // Successive moves: each view, or a later one, gets a picture.
   ViewRequest request = request_of(lighting);
@@ -109,7 +109,7 @@ TEST_CASE("layers by single luminaires add up to the picture by all, after any m
 TEST_CASE("under set dimmers the first picture after a move shows the settings") {
   const auto lighting = std::make_shared<Lighting>(room());
   LayerBoard board;
-  Painter painter(board, options(), nullptr);
+  Painter painter(board, options());
   ViewRequest request = request_of(lighting);
   painter.show(request);
   wait_until([&] { return painter.state().stage == "done"; });
@@ -149,7 +149,7 @@ TEST_CASE("a scene under dimmers, which shares the tracer, renders as one of its
 
 TEST_CASE("light from elsewhere, on the cells that are kept: the picture is that of a new start") {
   LayerBoard board;
-  Painter painter(board, options(), nullptr);
+  Painter painter(board, options());
   painter.show(request_of(std::make_shared<Lighting>(room())));
   wait_until([&] { return painter.state().stage == "done"; });
   const double before = mean_of(board.get("whole")->image);
@@ -160,7 +160,7 @@ TEST_CASE("light from elsewhere, on the cells that are kept: the picture is that
   const uint64_t view = painter.show(request_of(lighting));
   wait_until([&] { return painter.state().view == view && painter.state().stage == "done"; });
   LayerBoard fresh_board;
-  Painter fresh(fresh_board, options(), nullptr);
+  Painter fresh(fresh_board, options());
   fresh.show(request_of(lighting));
   wait_until([&] { return fresh.state().stage == "done"; });
   const Image after = board.get("whole")->image;
@@ -171,7 +171,7 @@ TEST_CASE("light from elsewhere, on the cells that are kept: the picture is that
 TEST_CASE("a camera that cannot be used fails by itself; the next one is shown") {
   const auto lighting = std::make_shared<Lighting>(room());
   LayerBoard board;
-  Painter painter(board, options(), nullptr);
+  Painter painter(board, options());
   ViewRequest request = request_of(lighting);
   request.camera.position.x = 1e30f;
   painter.show(request);
@@ -189,7 +189,7 @@ TEST_CASE("the painter ends at once, whatever it is at") {
   ViewRequest request = request_of(lighting);
   request.size = {1000, 1000};
   {
-    Painter painter(board, o, nullptr);
+    Painter painter(board, o);
     painter.show(request);
     wait_until([&] { return board.get("whole") != nullptr; });
   }

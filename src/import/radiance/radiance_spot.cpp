@@ -93,7 +93,7 @@ void add_radiance_spot(const RadianceLook& look, const std::string& name,
   e.kind = LightKind::point;
   e.radiance = look.emission * float(flat > 0 ? flat * tilt : extent.section);
   e.position = Vec3(extent.middle - scene.origin);
-  e.range = -float(length(look.spot_axis));
+  e.focal_distance = float(length(look.spot_axis));
   const Frame frame{Vec3(axis)};
   e.axes = {frame.tangent, frame.bitangent, frame.normal};
   if (!is_finite(e.position) || !is_finite(e.axes[2]) || !is_finite(e.radiance) ||
