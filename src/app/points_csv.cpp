@@ -44,7 +44,7 @@ std::string csv_field(const std::string& field) {
 }
 
 PointList read_points(const std::string& path) {
-  const std::string text = read_text_file(path, uint64_t(1) << 30);
+  const std::string text = read_text_or_pipe(path, uint64_t(1) << 30);
   CsvReader table(path, text);
   if (table.header().line == 0)
     throw InputError(path, 1, 1, "the header x,y,z,nx,ny,nz is missing");

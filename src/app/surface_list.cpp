@@ -77,7 +77,7 @@ SurfaceRequest surface_of(const CsvReader& table, const CsvRow& row,
 }  // namespace
 
 void read_surface_list(const std::string& path, AssessmentOptions& options) {
-  const std::string text = read_text_file(path, uint64_t(16) << 20);
+  const std::string text = read_text_or_pipe(path, uint64_t(16) << 20);
   CsvReader table(path, text);
   const std::vector<size_t> where =
       table.columns(surface_columns, 0, "the header node[,name][,profile][,lift][,border]");

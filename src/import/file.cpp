@@ -167,6 +167,23 @@ std::vector<uint8_t> read_file(const std::string& path, uint64_t max_bytes, Read
   return unpacked(path, read_whole<std::vector<uint8_t>>(path, max_bytes, purpose), max_bytes);
 }
 
+std::string read_text_or_pipe(const std::string& path, uint64_t max_bytes) {
+  std::error_code error;
+  const fs::file_type type = fs::status(path, error).type();
+  if (type != fs::file_type::fifo && type != fs::file_type::character)
+    return read_text_file(path, max_bytes);
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw InputError(path, 0, 0, std::string("cannot be opened: ") + std::strerror(errno));
+  std::string text, block(size_t(1) << 16, '\0');
+  while (in.read(block.data(), std::streamsize(block.size())), in.gcount() > 0) {
+    text.append(block, 0, size_t(in.gcount()));
+    if (text.size() > max_bytes)
+      throw InputError(path, 0, 0, "has more than " + std::to_string(max_bytes) + " bytes");
+  }
+  if (in.bad()) throw InputError(path, 0, 0, "cannot be read");
+  return text;
+}
+
 std::string read_text_file(const std::string& path, uint64_t max_bytes) {
   return unpacked(path, read_whole<std::string>(path, max_bytes, ReadFor::scene), max_bytes);
 }

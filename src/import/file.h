@@ -30,6 +30,8 @@ enum class ReadFor : uint8_t { scene, guess };
 std::vector<uint8_t> read_file(const std::string& path, uint64_t max_bytes = default_max_file_bytes,
                                ReadFor purpose = ReadFor::scene);
 std::string read_text_file(const std::string& path, uint64_t max_bytes = default_max_file_bytes);
+// Like read_text_file, but also reads pipes and standard input to their end.
+std::string read_text_or_pipe(const std::string& path, uint64_t max_bytes);
 
 // Contents of a large file. Reads the same as read_text_file, but in parallel and into
 // uninitialised large pages, which matters for files of hundreds of megabytes.

@@ -103,7 +103,7 @@ Vec3d along_of(const Row& row) {
 }
 
 std::vector<Row> read_rows(const std::string& path, const Vec3& down, WarningLog& warnings) {
-  const std::string text = read_text_file(path, uint64_t(64) << 20);
+  const std::string text = read_text_or_pipe(path, uint64_t(64) << 20);
   CsvReader table(path, text);
   const std::vector<size_t> where = read_header(table, path);
   const std::vector<size_t> unused = table.other_columns(columns);
