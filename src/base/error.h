@@ -7,35 +7,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "troffer/error.h"
+
 namespace troffer {
-
-// A file cannot be used. Readers throw it; app/ catches it once and prints "error:
-// FILE:LINE:COLUMN: what". Line and column count from 1; 0 means the whole file, printed as 1:1;
-// -1 means that there is no file to point into, printed without a place.
-class InputError : public std::runtime_error {
- public:
-  InputError(std::string file, int line, int column, std::string what);
-  const std::string& file() const { return file_; }
-  const std::string& reason() const { return reason_; }
-  int line() const { return line_; }
-  int column() const { return column_; }
-
- private:
-  std::string file_, reason_;
-  int line_, column_;
-};
-
-// The environment failed: cannot write, disk full, out of memory.
-class EnvironmentError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-// The command line asks for something that does not exist (exit status 2).
-class UsageError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 // Prints the failed condition, its place and what this thread was working on, then aborts.
 [[noreturn]] void check_failed(const char* condition, const char* file, int line);
