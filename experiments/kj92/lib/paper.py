@@ -59,7 +59,7 @@ def figure5(context):
         "difference would ask for again at once.",
         "This is the paper's rule and its figure. What its text leaves open is whether rays keep "
         "their positions; ours do not, because an unlucky ray would spoil a whole scanline "
-        "(docs/method/bintree.md has both measured).",
+        "(docs/log/bintree.md has both measured).",
     ]
     return Section(text, pictures, [table], [command])
 
