@@ -3,7 +3,7 @@
 //
 // A point's error has two parts. Gather rays bring their own part down to the asked error. The part
 // of the cells does not depend on them. Rays of cells serve all points, so many points are worth
-// many of them: docs/reference/measure.md, "Rays for points".
+// many of them: docs/method/measuring.md, "Rays for points".
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
 // Forecast of the cost of measuring a list by paths, from a look at a few points, and the choice
-// between paths and cells (docs/reference/measure.md, "Short lists").
+// between paths and cells (docs/method/measuring.md, "Short lists").
 //
 // Cost is counted in rays, not seconds, so that the choice is the same on every machine and for any
 // number of threads.

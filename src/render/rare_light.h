@@ -4,7 +4,7 @@
 // by way of a glass ball. At some points no sample finds it, and the others differ little: the
 // point is two per cent too dark, and its standard error does not show it. Other points of the list
 // have found such samples and provide a better estimate of the variance. Reference:
-// docs/reference/measure.md, "Rare light".
+// docs/method/measuring.md, "Rare light".
 #pragma once
 
 #include <cstddef>
