@@ -45,7 +45,7 @@ def row(option):
 def page(help_):
     out = ['# Options', '',
            'Every command and option, as the program lists them. `tools/options_page.py` writes this',
-           'page; a test compares the two. [usage.md](../usage.md) explains the options with examples.',
+           'page; a test compares the two. [usage.md](usage.md) explains what the commands do.',
            '']
     out += [f"- [{c['name']}](#troffer-{c['name']}): {c['summary']}" for c in help_['commands']]
     for command in help_['commands']:

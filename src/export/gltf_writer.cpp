@@ -171,20 +171,31 @@ void GltfWriter::add_instances() {
 
 void GltfWriter::add_light(const Light& e) {
   Json light;
-  if (e.kind == LightKind::distant || e.kind == LightKind::sun) {
-    light["type"] = "directional";
-  } else if (e.kind == LightKind::point || e.kind == LightKind::spot) {
-    light["type"] = e.kind == LightKind::point ? "point" : "spot";
-    if (e.range > 0) light["range"] = e.range;
-    if (e.focal_distance > 0)
-      warnings_.add("the focal distance of spotlights is left out: glTF has none");
-  } else {
-    if (!has_surface(e.kind))
+  switch (e.kind) {
+    case LightKind::distant:
+    case LightKind::sun:
+      light["type"] = "directional";
+      break;
+    case LightKind::point:
+    case LightKind::spot:
+      light["type"] = e.kind == LightKind::point ? "point" : "spot";
+      break;
+    case LightKind::environment:
+    case LightKind::sky:
       warnings_.add(std::string("a light of kind '") + name_of(e.kind) +
                     "' is left out: glTF has none (see --sky, --environment)");
-    return;
+      return;
+    case LightKind::polygon:
+    case LightKind::disk:
+    case LightKind::sphere:
+    case LightKind::mesh:
+      return;  // written with its surface
   }
-  if (!has_surface(e.kind) && e.texture >= 0)
+  if (e.range > 0) light["range"] = e.range;
+  if (e.focal_distance > 0)
+    warnings_.add("the focal distance of spotlights is left out: glTF has none");
+  if (!e.portal.empty()) warnings_.add("portals of suns are left out: glTF has none");
+  if (e.texture >= 0)
     warnings_.add("pictures that points and spots throw are left out: they shine evenly");
   Rgb radiance = e.radiance;
   if (e.kind == LightKind::sun) {

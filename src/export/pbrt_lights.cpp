@@ -178,8 +178,11 @@ std::string Writer::text(const Light& e) {
     case LightKind::sky:
       out = sky(e);
       break;
-    default:
-      return "";  // has a surface
+    case LightKind::polygon:
+    case LightKind::disk:
+    case LightKind::sphere:
+    case LightKind::mesh:
+      return "";  // written with its surface
   }
   for (size_t i = 0; i < e.portal.size(); ++i) {
     const Vec3d p = Vec3d(e.portal[i]) + scene_.origin;

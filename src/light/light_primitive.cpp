@@ -138,7 +138,12 @@ LightPrimitives::LightPrimitives(const Scene& scene)
         case LightKind::sphere:
           add_sphere(scene, i);
           break;
-        default:
+        case LightKind::point:
+        case LightKind::spot:
+        case LightKind::distant:
+        case LightKind::environment:
+        case LightKind::sky:
+        case LightKind::sun:
           add_without_surface(scene, i, scene_bounds);
           break;
       }

@@ -92,7 +92,12 @@ SourceSurface::SourceSurface(const Scene& scene, uint32_t light)
       area_ = 4 * pi * sqr(double(radius_));
       break;
     }
-    default:
+    case LightKind::point:
+    case LightKind::spot:
+    case LightKind::distant:
+    case LightKind::environment:
+    case LightKind::sky:
+    case LightKind::sun:
       return;  // without surface
   }
   finish_pieces();

@@ -54,11 +54,12 @@ void add_radiosity(Hasher& h, const RadiosityOptions& r) {
 
 uint64_t hash_of_settings(const Camera& camera, const RenderOptions& o) {
   Hasher h(1);
+  const MostViewingRays most = most_viewing_rays(o);
   add_camera(h, camera);
   h.add(std::string(o.method.row().name));
   h.add_all(needs_radiosity(o.method, o.indirect), needs_cells(o.method, o.indirect),
-            o.indirect == Indirect::none, o.spp, most_viewing_rays(o).in_pixel, o.shadow_rays,
-            o.error, o.depth, o.width, o.height, o.has_crop, o.seed, o.aovs.size());
+            o.indirect == Indirect::none, o.spp, most.in_pixel, most.in_mean, most.usual,
+            o.shadow_rays, o.error, o.depth, o.width, o.height, o.has_crop, o.seed, o.aovs.size());
   for (const int edge : o.crop) h.add(edge);
   for (const Aov a : o.aovs) h.add(int(a));
   add_trees(h, o.kj92.sampling);

@@ -155,7 +155,13 @@ Emission emission_of(const Scene& scene, const Light& e, Random& random) {
       add_face_rays(d.centre, d.normal, off_at(d.centre), random, out);
       break;
     }
-    default: {
+    case LightKind::distant:
+    case LightKind::environment:
+    case LightKind::sky:
+    case LightKind::sun:
+      break;  // nowhere
+    case LightKind::polygon:
+    case LightKind::mesh: {
       const Mesh& mesh = scene.meshes[e.geometry];
       if (e.triangles.empty()) break;
       const Triangle& t = mesh.triangles[e.triangles[e.triangles.size() / 2]];

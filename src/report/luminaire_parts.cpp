@@ -37,6 +37,11 @@ std::vector<LightPieces> connected(const LightPrimitives& all, const LightPieces
 }
 
 double spot_share(const Light& e, double cosine) {
+  if (e.falloff == SpotFalloff::linear) {  // in the angle
+    const double inner = std::acos(double(e.cos_inner)), outer = std::acos(double(e.cos_outer));
+    const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
+    return std::clamp((outer - angle) / std::max(outer - inner, 1e-9), 0.0, 1.0);
+  }
   const double range = double(e.cos_inner) - double(e.cos_outer);
   const double t = range > 0 ? std::clamp((cosine - double(e.cos_outer)) / range, 0.0, 1.0)
                              : double(cosine >= double(e.cos_outer));
@@ -113,9 +118,15 @@ std::string product_of(const Scene& scene, const Light& e,
       return "diffuse sphere";
     case LightKind::disk:
       return "diffuse disc";
-    default:
-      return "diffuse surface";
+    case LightKind::polygon:
+    case LightKind::mesh:
+    case LightKind::distant:
+    case LightKind::environment:
+    case LightKind::sky:
+    case LightKind::sun:
+      break;
   }
+  return "diffuse surface";
 }
 
 std::optional<double> watts_of(const std::string& name, const std::vector<PowerRequest>& power) {

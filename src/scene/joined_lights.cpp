@@ -54,7 +54,14 @@ Place place_of(const Scene& scene, const Light& e) {
       for (const Vec3& p : e.polygon) corners.push_back(corner(p));
       if (!corners.empty()) append(canonical(std::move(corners), e.is_two_sided), out);
       break;
-    default: {
+    case LightKind::point:
+    case LightKind::spot:
+    case LightKind::distant:
+    case LightKind::environment:
+    case LightKind::sky:
+    case LightKind::sun:
+      break;  // without surface
+    case LightKind::mesh: {
       const Mesh& mesh = scene.meshes[e.geometry];
       std::vector<std::vector<Corner>> all;
       for (const uint32_t t : e.triangles) {

@@ -12,7 +12,6 @@
 #include "temp_folder.h"
 
 using namespace troffer;
-using namespace troffer::test;
 
 TEST_CASE("a list is read from a pipe to its end, and not beyond a limit") {
   std::signal(SIGPIPE, SIG_IGN);  // the reader closes early

@@ -132,7 +132,12 @@ bool attach_to_light(Scene& scene, Light& e, const Luminaire& luminaire, Rgb sca
       own.cross_section = pi_f * sqr(scene.spheres[e.geometry].radius);
       e.is_two_sided = false;
       break;
-    default:
+    case LightKind::polygon:
+    case LightKind::mesh:
+    case LightKind::distant:
+    case LightKind::environment:
+    case LightKind::sky:
+    case LightKind::sun:
       return false;
   }
   if (!has_surface(e.kind)) e.kind = LightKind::point;
