@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the links between Markdown pages: every target and every anchor has to exist.
+"""Checks the links between Markdown pages, and what comments of the code cite of them: every page,
+every anchor and every heading has to exist.
 
   tools/check_links.py FOLDER
 
@@ -11,6 +12,7 @@ import re
 import sys
 
 LINK = re.compile(r'\]\(([^)\s]+)\)|(?:src|href)="([^"]+)"')
+CITATION = re.compile(r'\b(docs/[\w./-]+\.md)(?:[,:]? "([^"]+)")?')
 SKIPPED = {".git", "build", "node_modules"}
 
 
@@ -22,11 +24,16 @@ def pages(root):
                 yield os.path.join(folder, name)
 
 
+def titles(text):
+    """Headings of a page, and the bold beginnings of its paragraphs, in lower case."""
+    found = re.findall(r"^#+\s+(.*)$", text, re.MULTILINE)
+    found += re.findall(r"^(?:- |\d+\. )?\*\*([^*]+?)[.:]?\*\*", text, re.MULTILINE)
+    return {re.sub(r"[`*]", "", t).strip().lower() for t in found}
+
+
 def anchors(text):
     """Anchors of headings, as code hosts make them."""
-    titles = re.findall(r"^#+\s+(.*)$", text, re.MULTILINE)
-    return {re.sub(r"[^\w\- ]", "", re.sub(r"[`*]", "", t).strip().lower()).replace(" ", "-")
-            for t in titles}
+    return {re.sub(r"[^\w\- ]", "", t).replace(" ", "-") for t in titles(text)}
 
 
 def read(page):
@@ -48,10 +55,30 @@ def dead_links(page):
             yield link
 
 
+def dead_citations(root):
+    """Citations in code, as docs/PAGE.md, "HEADING"; a comment may break the line between them."""
+    for folder in ("src", "include", "tests"):
+        for where, _, names in os.walk(os.path.join(root, folder)):
+            for name in names:
+                if not name.endswith((".h", ".cpp")):
+                    continue
+                file = os.path.join(where, name)
+                text = re.sub(r"\n\s*///? ?", " ", read(file))
+                for match in CITATION.finditer(text):
+                    page = os.path.join(root, match.group(1))
+                    heading = match.group(2)
+                    if not os.path.exists(page):
+                        yield file, match.group(1)
+                    elif heading and heading.lower() not in titles(read(page)):
+                        yield file, match.group(0)
+
+
 def main():
-    dead = [(page, link) for page in pages(sys.argv[1]) for link in dead_links(page)]
+    root = sys.argv[1]
+    dead = [(page, link) for page in pages(root) for link in dead_links(page)]
+    dead += dead_citations(root)
     for page, link in dead:
-        print(f"{os.path.relpath(page, sys.argv[1])}: dead link {link}")
+        print(f"{os.path.relpath(page, root)}: dead link {link}")
     return 1 if dead else 0
 
 
