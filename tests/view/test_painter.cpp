@@ -193,7 +193,7 @@ TEST_CASE("the painter ends at once, whatever it is at") {
     painter.show(request);
     wait_until([&] { return board.get("whole") != nullptr; });
   }
-  { const Painter never_asked(board, o, nullptr); }
+  { const Painter never_asked(board, o); }
 }
 
 TEST_CASE("points are measured in the background, whole and by single luminaires alike") {
