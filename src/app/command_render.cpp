@@ -245,6 +245,12 @@ void restrict_selection(const Scene& scene, RenderCommand& c) {
   c.options.kj92.selection.only = lights_named(scene, c.selected_lights);
 }
 
+void set_up_method(const Scene& scene, RenderCommand& c) {
+  restrict_selection(scene, c);
+  if (c.explains)
+    c.options.planned = [](const MethodPlan& plan) { fmt::print(stderr, "{}", as_text(plan)); };
+}
+
 const StopFlag& stop_flag_of(ProcessGroup* group) {
   const StopFlag& asked = install_stop_handlers();
   if (group == nullptr) return asked;
@@ -294,9 +300,7 @@ int run_render(RenderCommand c) {
 
   check_options(scene, camera, c.options);  // before the radiosity, which may take long
 
-  restrict_selection(scene.scene, c);
-  if (c.explains)
-    c.options.planned = [](const MethodPlan& plan) { fmt::print(stderr, "{}", as_text(plan)); };
+  set_up_method(scene.scene, c);
   LastingRun lasting(c, start, stop_flag_of(group));
   lasting.begin(scene.scene, camera);
   const StopFlag& stop = lasting.stop();

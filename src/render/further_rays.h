@@ -31,7 +31,8 @@ struct TileSteps {
   uint32_t all() const { return first + surrogates + further; }
 };
 
-// Mostly empty if pixels get no further rays.
+// Mostly empty if pixels get no further rays. Thirteen members: the inputs, the limits, what the
+// first pass recorded, and the plan.
 class FurtherRays {
  public:
   // The arguments other than `plan` must outlive this object. plan: must stay in place.

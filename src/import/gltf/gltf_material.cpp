@@ -51,10 +51,8 @@ class GltfMaterials::Reader {
   // Returns a factor clamped to [0,1]; warns if it lies outside [1].
   float unit_number(const JsonNode& node) {
     const double value = node.as_number();
-    if (value < 0 || value > 1) {
-      warn(printable(node.pointer().substr(node.pointer().rfind('/') + 1)) +
-           " is outside [0,1]; clamped");
-    }
+    const std::string name = printable(node.pointer().substr(node.pointer().rfind('/') + 1));
+    if (value < 0 || value > 1) warn(name + " is outside [0,1]; clamped");
     return float(std::clamp(value, 0.0, 1.0));
   }
   float unit_number(const JsonNode& object, const char* key, float fallback) {
