@@ -1,6 +1,6 @@
-// Cells that are kept for later runs, with their rows and direct light. Another view, or a
-// later run, starts from it and adds what it sees beyond (docs/method/cells.md, "Walk-throughs").
-// Kept in a file (`--solution`).
+// Cells that are kept for later runs, with their rows and direct light. Another view, or a later
+// run, starts from it and adds what it sees beyond (docs/method/cells-appendix.md,
+// "Walk-throughs"). Kept in a file (`--solution`).
 #pragma once
 
 #include <cstdint>

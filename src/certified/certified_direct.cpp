@@ -11,7 +11,8 @@ namespace troffer {
 namespace {
 
 // Allowed error from which the coarse lattice is used. Its own error is up to .005
-// (docs/method/certified.md); smaller errors need a lattice that also resolves specks and wires.
+// (docs/results/certified.md, "The lattice"); smaller errors need a lattice that also resolves
+// specks and wires.
 constexpr double coarse_from = 0.02;
 // Allowed error where only a mean over many hits counts (SampleRequest::is_coarse).
 constexpr double rough_error = 0.3;

@@ -20,8 +20,8 @@ constexpr float reach_of_diagonal = 0.1f;
 // Extent of a portal's frame beyond its sides, in scene diagonals.
 constexpr double reach_of_frame = 16;
 // Sky patches lie at a finite distance. Receivers within this many scene radii of the centre see
-// them in their true directions to 2^-18 (docs/method/certified.md, "Lights at infinity"). Farther
-// receivers, such as measuring points, use rays.
+// them in their true directions to 2^-18 (docs/method/certified-appendix.md, "Lights at infinity").
+// Farther receivers, such as measuring points, use rays.
 constexpr float reach_of_far_cells = 256;
 
 }  // namespace

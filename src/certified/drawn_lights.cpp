@@ -12,11 +12,11 @@ namespace troffer {
 namespace {
 
 // Error of one sample. N points of an Owen-Sobol sequence over lights half in shadow err by about
-// this times N^-2/3, relative to their light (docs/method/certified.md, "Many lights").
+// this times N^-2/3, relative to their light (docs/method/certified-appendix.md, "Many lights").
 constexpr float error_of_one = 0.4f;
 constexpr float most_draws = 256;  // largest number of samples per hit
 // Costs of a certified light in shadow rays: per hit, and per cluster. Profiled
-// (docs/method/certified.md).
+// (docs/method/certified-appendix.md, "Many lights").
 constexpr float cost_of_hit = 0.15f, cost_of_cluster = 12;
 
 float points_of_pixel(float share, float error) {

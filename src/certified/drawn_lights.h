@@ -5,7 +5,7 @@
 // Unbiased: the choice of lights depends only on positions, normals and radiances. The number of
 // samples follows from the allowed error of a pixel, whose viewing rays share one Owen-Sobol
 // sequence. Lights without certificates, such as curved or textured meshes, are always sampled,
-// triangle by triangle. References: docs/method/certified.md, "Many lights".
+// triangle by triangle. References: docs/method/certified-appendix.md, "Many lights".
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,7 @@ constexpr double most_of_closed = 1;
 // Factor on the number of samples for unordered visibility, like `clutter` in open_parts.cpp.
 constexpr double clutter_of_rays = 2;
 // Fewest samples per hit. A viewing ray costs about as much, and neighbouring hits differ by about
-// as much (docs/method/certified.md).
+// as much (docs/log/certified-visibility.md, "Lights at infinity").
 constexpr double least_of_sky = 8, least_of_sun = 4;
 constexpr uint32_t most_few = 16;       // samples up to which precomputed chances are used
 constexpr uint32_t fewest_points = 16;  // per hit where suns reduce the number

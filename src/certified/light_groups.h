@@ -60,8 +60,8 @@ class LightGroups {
   float all_light(const Vec3& x, const Vec3& n) const;
 
  private:
-  // Number of certified groups from which lights count as many (docs/method/certified.md, "Many
-  // lights").
+  // Number of certified groups from which lights count as many (docs/method/certified-appendix.md,
+  // "Many lights").
   static constexpr uint32_t fewest_of_many = 24;
   // Number of merged groups that all_light() evaluates.
   static constexpr uint32_t most_taken_together = 64;

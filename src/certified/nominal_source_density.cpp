@@ -11,7 +11,7 @@ namespace troffer {
 namespace {
 
 // Nominal number of samples per viewing ray for all sampled lights together. Measured:
-// docs/method/cells.md, "Wide gloss seen from the side".
+// docs/method/cells-appendix.md, "Wide gloss seen from the side".
 constexpr float drawn_points = 4;
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace troffer {
 namespace {
 
 // Factor on the number of samples, because visibility behind scattered facets is unordered
-// (docs/method/certified.md, "Lights at infinity").
+// (docs/method/certified-appendix.md, "Lights at infinity").
 constexpr double clutter = 2;
 // Least share of the light assumed to arrive when the number of samples is chosen.
 constexpr double least_open = 0.02;

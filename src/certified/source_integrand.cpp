@@ -189,8 +189,8 @@ void scale_all(const Rgb& radiance, size_t n, const float* __restrict z,
 }
 
 // Largest width of a source, in lobe widths, for which gloss has low variance. Measured:
-// docs/method/certified.md. Gathered gloss always counts as low-variance, since spawned rays handle
-// its peaks.
+// docs/log/certified-visibility.md, "Gloss and textures". Gathered gloss always counts as
+// low-variance, since spawned rays handle its peaks.
 constexpr float sources_in_lobe = 2;
 
 // Returns the width of a source divided by its distance from x; very large if x may lie inside it.

@@ -19,7 +19,7 @@ namespace troffer {
 
 namespace {
 
-// All measured: docs/method/cells.md.
+// All measured: docs/log/cells.md.
 constexpr float size_of_median = 0.06f;  // cell size over median ray length, for fine errors
 constexpr double size_by_error = 0.58;   // power of the error by which cells are larger above those
 // Cells with fewer first rays than this get direct light from light samples, not from certificates:

@@ -16,7 +16,7 @@ namespace {
 constexpr int most_bounces = 16;
 // Limit of successive rays that are shorter than a cell is wide: in pictures, and at measuring
 // points. In a gap of 5 cm behind a luminaire nearly all rays are short. With fewer of them points
-// there are 1 to 4 % too dark, but pictures would take longer (docs/method/cells.md).
+// there are 1 to 4 % too dark, but pictures would take longer (docs/log/cells.md).
 constexpr int short_bounces = 4, most_short = 8;
 // Rays that are followed together: few enough to stay in the caches.
 constexpr size_t rays_of_part = 256;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr float unit = 16;  // rays of a neighbour of weight 1 in fits
 // Factor by which gathers along one curve, on one random sequence, err less together than their
-// spread suggests, which is that of independent ones. Measured: docs/method/cells.md.
+// spread suggests, which is that of independent ones. Measured: docs/log/cells.md.
 constexpr double gain_of_order = 2;
 // Largest radius of a fit, in harmonic mean distances. Beyond it the fit's bias exceeds the noise
 // that it saves.

@@ -1,6 +1,6 @@
 // Linear fits over the gathers of neighbouring records: the irradiance at each record, its
 // estimated error, and how many further rays a record needs. Used by GatherPass (gather_pass.h),
-// record by record and in any order. References: docs/method/cells.md, "Final gather".
+// record by record and in any order. References: docs/method/cells-appendix.md, "Final gather".
 #pragma once
 
 #include <vector>

@@ -21,7 +21,7 @@ constexpr uint32_t note_from_matte = MirrorImages::note_from_matte;
 // Thresholds of Russian roulette at gloss that a ray meets. Below them a light is sampled, or the
 // ray continued, with a probability in proportion to the light carried. The gloss of varnish or
 // plastics brings a twentieth of what the surface does, and may be noisier. Few rays of narrow
-// gloss bring most of its light, so it has lower thresholds. Measured: docs/method/cells.md.
+// gloss bring most of its light, so it has lower thresholds. Measured: docs/log/cells.md.
 constexpr float least_of_light = 0.25f, least_of_ray = 0.5f, least_of_narrow_ray = 0.1f;
 constexpr float least_by_width = 8;  // threshold over alpha squared
 

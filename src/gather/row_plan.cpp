@@ -11,7 +11,7 @@ namespace troffer {
 
 namespace {
 
-// All measured: docs/method/cells.md.
+// All measured: docs/log/cells.md.
 constexpr uint32_t rays_of_step = 8;  // further rays come in steps of this many
 // Importance that is worth a first ray of a cell, in mean pilot gather rays with all bounces
 // counted, at `fine_error`. It goes with this power of the error.

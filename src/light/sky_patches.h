@@ -4,8 +4,8 @@
 //
 // For certified visibility a patch is an ordinary quadrilateral. From two places of the scene, a
 // point of the cube differs in direction by at most 2^-25. That is less than the rounding margin of
-// certificates (docs/method/certified.md, "Lights at infinity"). Patches are cut where the radiance
-// is not smooth: at the horizon, around the sun, and at bright parts of an image.
+// certificates (docs/method/certified-appendix.md, "Lights at infinity"). Patches are cut where the
+// radiance is not smooth: at the horizon, around the sun, and at bright parts of an image.
 #pragma once
 
 #include <array>

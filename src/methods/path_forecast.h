@@ -1,6 +1,6 @@
 // Forecast of what a picture costs by path tracing, from a few thousand test paths. The default
-// method compares it with the least cost of a picture by cells (methods.cpp; docs/method/cells.md,
-// "Paths").
+// method compares it with the least cost of a picture by cells (method_plan.cpp;
+// docs/method/cells-appendix.md, "Paths").
 //
 // Cost is counted in rays, never in seconds. The choice is therefore the same on every machine, for
 // any number of threads and for every crop of the picture.

@@ -1,6 +1,6 @@
 // Coverage masks: the samples of a flat source that a receiver sees past a list of convex facets,
-// one bit each, without rays. mask_cell.h and plan_cells.h use them. docs/method/certified.md,
-// "Masks", has the proofs.
+// one bit each, without rays. mask_cell.h and plan_cells.h use them.
+// docs/method/certified-appendix.md, "Masks", has the proofs.
 //
 // Lattice: for coprime a and b, the samples are the points (u,v) of [0,1)² whose canvas coordinates
 // (k,j) = (a u + b v, b - b u + a v) are integers plus a common shift. The square holds exactly a²

@@ -113,8 +113,8 @@ double half_diameter_of(const ReceiverHull& hull) {
 // Fewest facets and round bodies before a sphere for which a cluster is halved.
 constexpr size_t fewest_to_halve = 8;
 
-// Relative costs (docs/method/certified.md): facets of a mask per direct ray; direct rays per mask,
-// its certificates and its pilot samples; facets gathered per ray.
+// Relative costs (docs/log/certified-visibility.md, "Residual rays"): facets of a mask per direct
+// ray; direct rays per mask, its certificates and its pilot samples; facets gathered per ray.
 constexpr double facets_per_ray = 6, rays_per_mask = 25, gathered_per_ray = 4;
 // Facets that a mask may always have.
 constexpr double fewest_facets = 384;

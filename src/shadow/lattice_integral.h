@@ -2,7 +2,7 @@
 // open samples, or at every second or fourth row and column of them. mask_cell.cpp uses it for
 // smooth integrands. With a complete list the sum is the answer. Otherwise the sum assumes that
 // nothing else hides the samples, and rays to a few of the points estimate what is hidden.
-// References: docs/method/certified.md, "Gloss and textures".
+// References: docs/method/certified-appendix.md, "Gloss and textures".
 #pragma once
 
 #include <cstdint>

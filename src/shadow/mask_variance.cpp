@@ -12,8 +12,8 @@ namespace {
 // Returns the variance of the count of lattice samples behind an edge, in samples² per pair of
 // neighbours that the edge separates. The ratio of pairs in rows and in columns gives the edge's
 // direction. The variance is large along rows and columns, and along lines through every second
-// sample (measured: docs/method/certified.md). Equal numbers usually mean edges along both sides of
-// the source, not diagonals.
+// sample (measured: docs/results/certified.md, "The lattice"). Equal numbers usually mean edges
+// along both sides of the source, not diagonals.
 float edge_variance(float least_pairs, float most_pairs) {
   if (most_pairs < 6) return 0.14f;  // too few pairs for a direction
   const float ratio = least_pairs / most_pairs;

@@ -4,7 +4,7 @@
 // E, the numbers n_i = W_i sum W / 4E² keep the sum of these bounds at E² with the fewest rays. A
 // weak source's visible share has a looser bound of its own. These bounds hold for the rays alone;
 // the error of the samples that they go through is estimated separately.
-// References: docs/method/certified.md, "Residual rays".
+// References: docs/method/certified-appendix.md, "Residual rays".
 #pragma once
 
 #include <cstdint>

@@ -40,7 +40,7 @@ double changes(std::span<const float> values, size_t steps) {
 
 // Share of a shape's variance that the sequence leaves, since it has strata of other shapes and
 // sizes too. kept: squared difference of neighbours over that of samples a few strata apart
-// (measured: docs/method/certified.md).
+// (measured: docs/log/certified-visibility.md, "Residual rays").
 double left_by_squares(double kept) {
   const double fine = std::clamp((kept - 0.6) / 0.38, 0.0, 1.0);
   return 0.3 + 0.7 * fine * fine * fine;

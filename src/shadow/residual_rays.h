@@ -1,7 +1,7 @@
 // Casts residual rays: shadow rays through samples that incomplete facet lists leave open, for all
 // sources of a cluster together. plan_rays.h chooses their number, trace_rays.h traces them, and
 // this module sums their answers. certified_light.cpp calls it.
-// References: docs/method/certified.md, "Residual rays".
+// References: docs/method/certified-appendix.md, "Residual rays".
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // Certificates for spheres and disks as occluders.
-// References: docs/method/certified.md, "Spheres and disks in the way".
+// References: docs/method/certified-appendix.md, "Spheres and disks in the way".
 #pragma once
 
 #include <cstdint>

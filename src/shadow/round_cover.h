@@ -5,7 +5,7 @@
 // selects the half of the cone. Over the samples both are polynomials in the canvas coordinates
 // (k,j). Each row is therefore covered between two roots of a quadratic: exact, without
 // tessellation.
-// References: docs/method/certified.md, "Spheres and disks in the way".
+// References: docs/method/certified-appendix.md, "Spheres and disks in the way".
 #pragma once
 
 #include "base/vec.h"

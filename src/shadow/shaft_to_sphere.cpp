@@ -1,6 +1,6 @@
 // Shafts to spheres (shaft.h). Every plane supports the convex hull of receivers and sphere, so any
 // choice of directions is correct. The directions are chosen for a tight shaft
-// (docs/method/certified.md, "Spheres").
+// (docs/method/certified-appendix.md, "Spheres").
 #include <algorithm>
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // Spherical sources. From a point outside, a sphere of uniform radiance looks like the disk that
 // its outline spans, and the same occluders hide both. Each receiver has its own disk; facet lists
 // are shared by the cluster. settle_part.cpp and gather_facets.cpp use this.
-// References: docs/method/certified.md, "Spheres".
+// References: docs/method/certified-appendix.md, "Spheres".
 #pragma once
 
 #include "base/quad.h"
