@@ -113,11 +113,11 @@ Joined join(const MergeCommand& c) {
 }  // namespace
 
 void add_merge(CLI::App& app, MergeCommand& c) {
-  CLI::App* s = app.add_subcommand("merge", "Join the parts of a picture that render --part made");
+  CLI::App* s = app.add_subcommand("merge", "Join the parts of a picture made by render --part");
   s->add_option("output", c.output, "Picture to write: .exr .hdr .pfm .png")->required();
   s->add_option("parts", c.parts, "All parts, in any order: .exr")->required();
-  s->add_option("--exposure", c.exposure, "For .png: stops, or auto [as render]");
-  s->add_option("--tone-map", c.tone_map, "Tone curve, for .png")
+  s->add_option("--exposure", c.exposure, "Exposure of .png in stops, or auto [as for render]");
+  s->add_option("--tone-map", c.tone_map, "Tone curve of .png")
       ->check(one_of({"filmic", "none"}))
       ->capture_default_str();
   s->add_flag("--quiet", c.is_quiet, "No warnings");

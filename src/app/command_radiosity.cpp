@@ -161,21 +161,21 @@ void add_radiosity(CLI::App& app, RadiosityCommand& c) {
   CLI::App* s = app.add_subcommand("radiosity", "Compute the radiosity of a scene's surfaces");
   add_scene_choice(*s, c.scene);
   s->add_option("-o,--output", c.outputs,
-                ".gltf, .glb: mesh and light to look at; any other ending, such as .trad: the "
-                "solution, for --solution; may be repeated")
+                ".gltf or .glb: mesh and light for viewers; any other ending, such as .trad: "
+                "solution for --solution; may be repeated")
       ->required()
       ->allow_extra_args(false);
   s->add_flag("--cells", c.makes_cells,
-              "Cells of all surfaces for --method certified instead: for --solution of render and "
-              "measure");
+              "Compute cache cells of all surfaces instead, for --method certified and --solution "
+              "of render and measure");
   s->add_option("--element-size", c.options.meshing.element_size,
-                "Longest edge of an element, metres [by the scene]")
+                "Longest edge of an element, in metres [chosen for about 4000 elements]")
       ->check(number_above_zero());
   s->add_option("--patch-size", c.options.meshing.patch_size,
-                "Longest edge of a patch, metres [by the element size]")
+                "Longest edge of a patch, in metres [derived from the element size]")
       ->check(number_above_zero());
   s->add_option("--stored", c.options.stored_per_point,
-                "Sources whose light is stored separately, per sample point")
+                "Number of sources whose light is stored separately at each sample point")
       ->check(whole_number_between(0, max_stored))
       ->capture_default_str();
   s->add_option("--unshot", c.options.unshot_fraction,

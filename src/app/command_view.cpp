@@ -64,14 +64,14 @@ void add_view(CLI::App& app, ViewCommand& c) {
       ->check(whole_number_between(1, 65535));
   s->add_option("--size", c.size, "Picture size in pixels [about 640x480]");
   s->add_option("--camera", c.camera,
-                "Camera to start from, by its name in troffer info [the first]");
+                "Camera to start with; troffer info lists the names [the first]");
   add_method(*s, c.method);
   s->add_option("--error", c.error, "Standard error at which a picture is finished")
       ->check(number_between(1e-3, 1))
       ->capture_default_str();
   add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
-  s->add_option("--tev", c.tev, "Address of a tev image viewer that shows the pictures too");
+  s->add_option("--tev", c.tev, "Address of a tev image viewer that also shows the pictures");
   add_threads(*s, c.threads);
   add_seed(*s, c.seed);
   s->add_flag("--quiet", c.is_quiet, "No warnings");

@@ -40,12 +40,13 @@ void add_lasting_options(CLI::App& app, LastingOptions& o) {
          "Stop when the estimated error of the picture, relative to its light, is at most this")
       ->check(number_between(1e-6, 10));
   app.add_option("--checkpoint", o.checkpoint,
-                 "File that keeps the work done, every minute and when interrupted");
+                 "File to save the work done, at intervals and when interrupted");
   app.add_option("--checkpoint-interval", o.checkpoint_interval, "Seconds between checkpoints")
       ->check(seconds)
       ->capture_default_str();
   app.add_flag("--resume", o.is_resumed, "Continue from --checkpoint, if the file exists");
-  app.add_option("--part", o.part, "Only share K of N of the picture; troffer merge joins them");
+  app.add_option("--part", o.part,
+                 "Render only part K of N of the picture; troffer merge joins the parts");
 }
 
 void apply_lasting_options(RenderCommand& c, bool has_spp) {
