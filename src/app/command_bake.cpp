@@ -31,7 +31,7 @@ namespace {
 
 BakedShading shading_of(const BakeCommand& c) {
   if (int(c.has_vertex_colors) + int(c.is_unlit) + int(c.is_emissive) > 1)
-    throw UsageError("only one of --vertex-colours, --unlit and --emissive can be had at a time");
+    throw UsageError("--vertex-colours, --unlit and --emissive exclude each other: give one");
   return c.has_vertex_colors ? BakedShading::vertex_colors
          : c.is_unlit        ? BakedShading::unlit
          : c.is_emissive     ? BakedShading::emissive
@@ -227,7 +227,7 @@ int check_and_bake(const CLI::App& command_line, BakeCommand command) {
   BakeOptions options = options_of(command);
   if (command_line.get_option("--texels-per-metre")->count() > 0 &&
       command_line.get_option("--resolution")->count() > 0)
-    throw UsageError("--resolution and --texels-per-metre both say how fine: give one");
+    throw UsageError("--resolution and --texels-per-metre both set the texel size: give one");
   warn_of_unused_options(command_line, options.light.method, command.is_quiet);
   return run_bake(command, std::move(options));
 }

@@ -37,7 +37,7 @@ void check_command(const RadiosityCommand& c) {
       if (ending == other)
         throw UsageError("radiosity writes .gltf, .glb or a solution (.trad), not ." + ending);
     if (c.makes_cells && (ending == "gltf" || ending == "glb"))
-      throw UsageError("--cells are not shown in ." + ending + ": give a file for --solution");
+      throw UsageError("--cells cannot be written as ." + ending + ": give a file for --solution");
   }
 }
 
@@ -81,8 +81,8 @@ void print_summary(const RadiosityResult& r) {
   fmt::print("{} shots, {:.1f} million rays, {:.1f} s\n", s.shots, double(s.rays) * 1e-6,
              r.seconds);
   fmt::print(
-      "of the emitted power {:.2f} % is absorbed, {:.2f} % left to specular surfaces, {:.2f} % "
-      "escaped, {:.2f} % not shot, {:.2f} % is missing\n",
+      "of the emitted power, {:.2f} % is absorbed, {:.2f} % is left to specular surfaces, {:.2f} % "
+      "escapes, {:.2f} % is unshot, {:.2f} % is unaccounted for\n",
       percent(b.absorbed, b.emitted), percent(b.lost_to_specular, b.emitted),
       percent(b.escaped, b.emitted), percent(b.unshot, b.emitted),
       percent(b.unaccounted, b.emitted));
@@ -151,7 +151,7 @@ int leave_unfinished(const RadiosityCommand& c, const PreparedScene& scene,
   if (!c.stats.empty()) files.add(left.place(c.stats), statistics_json(c, result, seconds, up));
   files.commit();
   fmt::print(stderr, "interrupted after {} shots: {}{}\n", s.shots, left.text(),
-             s.shots > 0 ? "; render does not take an unfinished solution" : "");
+             s.shots > 0 ? "; render does not accept an unfinished solution" : "");
   return exit_interrupted;
 }
 

@@ -101,8 +101,8 @@ int run_view(const ViewCommand& c) {
   if (std::any_of(warnings.begin(), warnings.end(),
                   [](const Warning& w) { return w.text == default_sky_warning; })) {
     settings.notice =
-        "The scene has no light. An even sky of 10 000 lx, which it does not have, lights this "
-        "picture: its values say nothing about the scene. --sky none keeps it dark.";
+        "The scene has no light. A uniform sky of 10 000 lx was added to show it, so values in "
+        "this picture say nothing about the scene. --sky none keeps it dark.";
   }
   settings.camera = camera_named(scene, c.camera);
   settings.up = normalize(up.decision.up);

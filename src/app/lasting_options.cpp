@@ -25,7 +25,7 @@ void parse_part(const std::string& text, RenderOptions& options) {
   }
   if (!is_sound || options.parts < 1 || options.parts > most || options.part < 1 ||
       options.part > options.parts)
-    throw UsageError("--part: '" + text + "' is no share K/N with K from 1 to N");
+    throw UsageError("--part: '" + text + "' is not K/N with K from 1 to N");
 }
 
 }  // namespace
@@ -57,11 +57,12 @@ void apply_lasting_options(RenderCommand& c, bool has_spp) {
   if (!l.part.empty()) {
     parse_part(l.part, c.options);
     if (l.error_limit > 0)
-      throw UsageError("--error-limit is of the whole picture: it does not go with --part");
+      throw UsageError("--error-limit applies to the whole picture and does not go with --part");
     if (c.has_preview) throw UsageError("--preview does not go with --part");
     for (const std::string& o : c.outputs)
       if (image_format(o) != ImageFormat::exr)
-        throw UsageError("--part writes .exr only, which troffer merge joins to any format");
+        throw UsageError(
+            "--part writes .exr only; troffer merge joins the parts and writes any format");
   }
   c.options.error_limit = l.error_limit;
   // Methods without refinement get as many samples as the error limit needs.

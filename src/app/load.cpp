@@ -61,7 +61,7 @@ void tell_warnings(const Scene& scene) {
     fmt::print(stderr, "\n");
   }
   if (entries.size() > most_lines)
-    fmt::print(stderr, "warning: {} more kinds (troffer info lists them)\n",
+    fmt::print(stderr, "warning: {} more kinds of warnings (troffer info lists them)\n",
                entries.size() - most_lines);
 }
 

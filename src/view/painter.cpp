@@ -121,7 +121,7 @@ void Painter::paint(const Orders& orders) {
   view_ = orders.view;
   begun_ = orders.asked;
   lighting_ = orders.request.lighting;
-  tell("Drawing a first picture", 0);
+  tell("Rendering a first picture", 0);
   sight(orders);
   add_works(orders);
   const bool is_dimmed = orders.extras.is_dimmed();

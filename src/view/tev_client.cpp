@@ -94,7 +94,7 @@ TevClient::TevClient(const std::string& address) {
   if (host.empty() || port.empty() || port.find_first_not_of("0123456789") != port.npos)
     throw UsageError("--tev: '" + address + "' is not HOST:PORT");
   socket_ = connected(host, port);
-  if (socket_ < 0) throw EnvironmentError("--tev: nobody answers at " + address);
+  if (socket_ < 0) throw EnvironmentError("--tev: no answer from " + address);
   thread_ = std::thread([this] { run(); });
 }
 

@@ -184,8 +184,8 @@ TEST_CASE("a scene without light and camera is lit, framed and exposed, and says
   const Finished f = run_program(folder, plain);
   REQUIRE(f.status == 0);
   CHECK(contains(f.err, "no light"));
-  CHECK(contains(f.err, "even sky"));
-  CHECK(contains(f.err, "before it"));
+  CHECK(contains(f.err, "uniform sky"));
+  CHECK(contains(f.err, "in front of it"));
   CHECK(contains(f.err, "exposed by"));
   double mean = 0;
   for (const Rgb& p : read_image(png).pixels) mean += double(luminance(p)) / (40 * 30);

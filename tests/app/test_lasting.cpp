@@ -56,7 +56,7 @@ TEST_CASE("a time limit ends a render with a whole picture, says so, and is no f
                              folder.path("s.json"), "--aov", "error", "--quiet"});
     CAPTURE(f.err);
     CHECK(f.status == 0);
-    CHECK(contains(f.err, "time limit: wrote the picture as it was after"));
+    CHECK(contains(f.err, "time limit: wrote the picture after"));
     CHECK(contains(read_file(folder.path("s.json")), "\"ended_by\": \"time_limit\""));
     const LayeredImage image = read_layers(folder.path("o.exr"));
     CHECK(black_pixels(image.layers[0].image) == 0);
@@ -105,7 +105,8 @@ TEST_CASE("checkpoints that cannot be gone on from, and those that would be lost
   const std::string bytes = read_file(checkpoint);
   REQUIRE(!bytes.empty());
   std::filesystem::remove(folder.path("o.pfm"));
-  check_refused(run_program(folder, kept + Words{"--spp", "1000000"}), 1, "--resume goes on");
+  check_refused(run_program(folder, kept + Words{"--spp", "1000000"}), 1,
+                "continue from it with --resume");
   check_refused(run_program(folder, kept + Words{"--resume", "--spp", "999999"}), 1,
                 "other options");
   check_refused(
@@ -120,7 +121,7 @@ TEST_CASE("checkpoints that cannot be gone on from, and those that would be lost
   CHECK(read_file(checkpoint) == "mine");
   check_refused(run_program(folder, {"render", scene, "-o", folder.path("o.pfm"), "--checkpoint",
                                      "/dev/null", "--resume"}),
-                2, "plain file");
+                2, "regular file");
   check_refused(run_program(folder, {"render", scene, "-o", folder.path("o.pfm"), "--checkpoint",
                                      folder.path("no/c.chk")}),
                 1, "cannot write");
@@ -200,7 +201,7 @@ TEST_CASE("shares that do not make up a picture are refused, by a line each") {
   CHECK(program.wait().status == 130);
   const std::string long_a =
       part("h.exr", {"--part", "1/2", "--spp", "1000000", "--time-limit", "0.3"});
-  check_refused(merge({b, long_a}), 1, "broken off");
+  check_refused(merge({b, long_a}), 1, "unfinished");
   for (const std::string wrong : {"0/2", "3/2", "1", "1/", "/2", "1/2x", "-1/2", "1/0", "x"})
     check_refused(run_program(folder, {"render", scene, "-o", out, "--part", wrong}), 2, "--part");
   check_refused(run_program(folder, {"render", scene, "-o", out, "--part", "1/100"}), 2, "tiles");
@@ -221,7 +222,7 @@ TEST_CASE("an error limit: told, and told where it is not reached") {
   CHECK(contains(read_file(folder.path("s.json")), "\"ended_by\": \"error_limit\""));
   const Finished few = render({"--error-limit", ".01", "--spp", "4"});
   CHECK(few.status == 0);
-  CHECK(contains(few.err, "more than --error-limit"));
+  CHECK(contains(few.err, "above --error-limit"));
   CHECK(contains(read_file(folder.path("s.json")), "\"ended_by\": \"complete\""));
 }
 

@@ -88,7 +88,7 @@ TEST_CASE("--luminaire takes a wildcard: each light that fits it shines by the f
           doctest::Approx(100 / 4.0).epsilon(1e-4));
   const Finished none = t.run({"--luminaire", "desk*=" + t.lamp});
   CHECK(none.status == 2);
-  CHECK(contains(none.err, "no name fits 'desk*'"));
+  CHECK(contains(none.err, "no name matches 'desk*'"));
   // Surfaces that do not emit yet.
   CHECK(t.run({"--luminaire", "flo*=" + t.lamp}).status == 0);
 }

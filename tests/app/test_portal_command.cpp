@@ -160,7 +160,7 @@ TEST_CASE("several portals: each lets in its own light, none twice") {
                           "LightSource \"infinite\" \"rgb L\" [3 3 3]\n");
     return run_program(folder, {"measure", scene, "--points", at, "--portal", whole, "--indirect",
                                 "none", "--spp", "16"})
-               .err.find("1 triangles lie beyond") != std::string::npos;
+               .err.find("1 triangles lie outside") != std::string::npos;
   };
   CHECK(is_told(2.1));
   CHECK(!is_told(1.9));

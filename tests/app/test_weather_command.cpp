@@ -94,7 +94,7 @@ TEST_CASE("codes of missing irradiance are an error, and no light is told by wha
   CHECK(contains(much.err, "more than the sun sends"));
   const Finished dark = t.run(epw(equator, "3,21", 13, "500,0,0"), "03-21T12:30", "0,0,1");
   CHECK(dark.status == 0);
-  CHECK(contains(dark.err, "500 W/m2 on the ground"));
+  CHECK(contains(dark.err, "500 W/m2 of global irradiance"));
   // The column of global radiation does not matter.
   CHECK(t.lx(epw(equator, "3,21", 13, "9999,800,100"), "03-21T12:30") ==
         doctest::Approx(t.lx(epw(equator, "3,21", 13, "880,800,100"), "03-21T12:30")));
@@ -138,8 +138,8 @@ TEST_CASE("leap days are days of files that have them, whatever year their row s
                                    {"13-01T12:30", "the month 13"},
                                    {"06-21T12:60", "the minute 60"},
                                    {"06-21", "the time of day is missing"},
-                                   {"2005-06-21T12:30", "no year belongs here"},
-                                   {"06-21T12:30+02:00", "'+02:00' follows the minute"},
+                                   {"2005-06-21T12:30", "give no year"},
+                                   {"06-21T12:30+02:00", "'+02:00' must not follow the minute"},
                                    {"noon", "the month: a number expected"}}) {
     const Finished f = t.run(leap, date, "0,0,1");
     CAPTURE(date);

@@ -142,7 +142,7 @@ TEST_CASE("light that gets lost is told") {
   const RadiositySolution s = ready.solve(o);
   CHECK(s.balance.unaccounted > 0.5 * s.balance.emitted);
   REQUIRE(radiosity_warnings(s).size() == 1);
-  CHECK(radiosity_warnings(s)[0].find("% of the emitted power came to no sample point") !=
+  CHECK(radiosity_warnings(s)[0].find("% of the emitted power reached no sample point") !=
         std::string::npos);
 }
 

@@ -105,6 +105,6 @@ TEST_CASE("hair: many long thin triangles stay within the bounds, and it is said
   CHECK(solution.mesh.memory_bytes() < size_t(60) << 20);
   bool is_told = false;
   for (const std::string& w : radiosity_warnings(solution))
-    is_told = is_told || w.find("times as long as wanted") != std::string::npos;
+    is_told = is_told || w.find("times as long as requested") != std::string::npos;
   CHECK(is_told);
 }

@@ -261,7 +261,7 @@ TEST_CASE("checkpoints that lie, with sound sums: refused, or a picture all the 
         CHECK(r.layers[0].image.width == 19);
       } catch (const InputError& e) {
         ++refused;
-        CHECK(e.reason() == "checkpoint has values that none can have");
+        CHECK(e.reason() == "checkpoint has invalid values");
       }
       std::remove(path.c_str());
     }
