@@ -118,7 +118,7 @@ TEST_CASE("only the default scene is shown; without scenes, all roots are") {
   CHECK(import_text(square_scene(nodes, plain_material)).meshes.size() == 2);
   scene = import_text(square_scene(nodes, plain_material + ",'scenes':[{}]"));
   CHECK(scene.meshes.empty());
-  CHECK(has_warning(scene, "no triangles"));
+  CHECK(has_warning(scene, "no visible triangles"));
 }
 
 TEST_CASE("cameras: vertical field of view, aspect, orthographic size, names, node transforms") {
@@ -182,7 +182,7 @@ TEST_CASE("extensions that are not known are warnings, stronger ones where a fil
                                        "'ABC_rain'],'extensionsRequired':['ABC_rain']"));
   CHECK(scene.meshes.size() == 1);
   CHECK(has_warning(scene, "'ABC_clouds' is not supported and ignored"));
-  CHECK(has_warning(scene, "'ABC_rain' is not supported, though the file requires it"));
+  CHECK(has_warning(scene, "'ABC_rain' is not supported, although the file requires it"));
   CHECK_FALSE(has_warning(scene, "'ABC_rain' is not supported and"));
   CHECK_FALSE(has_warning(scene, "KHR_materials_ior"));
 }
@@ -198,8 +198,8 @@ TEST_CASE("what a scene lists is shown once, and where its parents place it") {
     return scene;
   };
   CHECK(heights("0").warnings.total() == 0);
-  CHECK(has_warning(heights("1"), "is no root"));
-  CHECK(has_warning(heights("1,0"), "is no root"));
+  CHECK(has_warning(heights("1"), "is not a root"));
+  CHECK(has_warning(heights("1,0"), "is not a root"));
   CHECK(has_warning(heights("0,0"), "listed twice"));
 }
 

@@ -40,7 +40,7 @@ TEST_CASE("levels: as many as allowed and no more, in arrays, objects and both")
   CHECK(refusal("[[[[]]]]", limits).empty());
   CHECK(refusal("[[[[]],[[],[]]]]", limits).empty());
   CHECK(refusal("{\"a\":{\"b\":{\"c\":{}}}}", limits).empty());
-  const std::string what = "JSON with more than 4 arrays and objects within each other";
+  const std::string what = "JSON with more than 4 levels of arrays and objects";
   CHECK(refusal("[[[[[]]]]]", limits) == "a.gltf:1:5: " + what);
   CHECK(refusal("{\"a\":\n {\"b\":[{\"c\":\n  [1]}]}}", limits) == "a.gltf:3:3: " + what);
 }
@@ -58,7 +58,7 @@ TEST_CASE("values: as many as allowed and no more; brackets and commas in string
 TEST_CASE("ten million open brackets, of which no parser gets to see the end") {
   const std::string arrays = repeated("[", 10'000'000), objects = repeated("{\"a\":", 2'000'000);
   const double before = peak_memory_mb();
-  const std::string what = "JSON with more than 200 arrays and objects within each other";
+  const std::string what = "JSON with more than 200 levels of arrays and objects";
   CHECK(refusal(arrays) == "a.gltf:1:201: " + what);
   CHECK(refusal(objects) == "a.gltf:1:1001: " + what);
   CHECK(peak_memory_mb() - before < 64);  // a copy of the text, but not its arrays

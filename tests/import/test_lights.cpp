@@ -139,7 +139,7 @@ TEST_CASE("pbrt's portals are rectangles of the world; others are told and left 
     CAPTURE(odd);
     const Scene left = with(odd);
     CHECK(only_light(left).portal.empty());
-    CHECK(has_text(left, "portal is no rectangle"));
+    CHECK(has_text(left, "portal is not a rectangle"));
   }
 }
 

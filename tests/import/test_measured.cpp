@@ -129,7 +129,7 @@ TEST_CASE("measured files that are missing or lie are grey, with one warning") {
     CHECK(r.material.base_color.value == Rgb{0.5f});
   };
   const std::string good = measured(0.2f, 0, 0.3f, 0.3f, 20);
-  check_grey(read("PF"), "is no tensor file");
+  check_grey(read("PF"), "is not a tensor file");
   check_grey(read(good.substr(0, 40)), "ends too early");
   check_grey(read(good.substr(0, good.size() - 4)), "outside the file");
   Read r;

@@ -262,7 +262,7 @@ TEST_CASE("spectra of sources keep their luminance") {
 
 TEST_CASE("what cannot be is an error with its place") {
   CHECK(error_of("<shape type='sphere'>\n  <float name='radius' value='two'/></shape>") ==
-        "scene.xml:3:4: 'two' is no number");
+        "scene.xml:3:4: 'two' is not a number");
   CHECK(error_of("<shape type='sphere'>\n<ref id='nothing'/></shape>") ==
         "scene.xml:3:2: no element has the id 'nothing'");
   CHECK(error_of("<include filename='$x'/>") == "scene.xml:2:2: the parameter $x has no <default>");

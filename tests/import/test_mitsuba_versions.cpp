@@ -148,7 +148,7 @@ TEST_CASE("bsdfs of an OBJ file's materials") {
   REQUIRE(scene.meshes.size() == 3);
   CHECK(scene.materials.at(scene.meshes[0].material).base_color.value == Rgb{0.1f});
   CHECK(scene.materials.at(scene.meshes[1].material).base_color.value == Rgb{0.2f});
-  CHECK(has_warning(scene, "no bsdf is named after"));
+  CHECK(has_warning(scene, "without a bsdf of the same name"));
   // A single bsdf applies to the whole file, whatever its name.
   const Scene one = import_mitsuba(folder.write(
       "t.xml",

@@ -202,7 +202,7 @@ TEST_CASE("MTL: gloss of two widths and its direction, sheen, colours and images
   CHECK(told("Kd .5 .5 .5\naniso .8\n", "aniso and Ps without Pr or Pm"));
   CHECK(!told("Kd .5 .5 .5\nPr .4\naniso .8\n", "aniso"));
   for (const char* other : {"Pr .4\n", "illum 3\nKs 1 1 1\n", "illum 1\n"})
-    CHECK(told(other + std::string("map_Ks gone.png\n"), "map_Ks is for gloss"));
+    CHECK(told(other + std::string("map_Ks gone.png\n"), "map_Ks is ignored unless"));
 
   const TempFolder folder;
   write_image(folder.path("k.pfm"), Image(2, 2, Rgb{0.5f}));
@@ -373,7 +373,7 @@ TEST_CASE(
   const ReferenceNotes references;
   const Scene scene = import_obj(
       folder.write("s.obj", "mtllib /home/somebody/m.mtl\n" + square + "usemtl a\nf 1 2 3\n"));
-  CHECK(has_warning(scene, "the one beside the scene is"));
+  CHECK(has_warning(scene, "the one beside the scene is used"));
   REQUIRE(references.notes().size() == 1);
   CHECK(references.notes()[0].find("is read from 'red.pfm'") != std::string::npos);
   CHECK(scene.textures.at(0).kind == TextureKind::image);

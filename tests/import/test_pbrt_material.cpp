@@ -149,7 +149,7 @@ TEST_CASE("mixes by textures, and of textures") {
   check_near(color_at(scene, {0.75f, 0.25f}), {0, 0, 0.5f});  // where the share is 1
   // Different kinds are replaced by the one of more weight: the texture's mean is a half.
   scene = mix("\"a\" \"m\"", "\"texture amount\" \"f\"");
-  CHECK(has_warning(scene, "more weight"));
+  CHECK(has_warning(scene, "larger weight"));
   CHECK(scene.materials.at(scene.meshes.at(0).material).kind == MaterialKind::conductor);
   scene = import_world(image +
                        "Texture \"d\" \"spectrum\" \"directionmix\" \"texture tex1\" \"t\" \"rgb "

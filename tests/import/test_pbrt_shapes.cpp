@@ -137,7 +137,7 @@ TEST_CASE("mixed materials: two diffuse ones exactly, others by their weight") {
   const std::string other = "Material \"mix\" \"string materials\" [\"a\" \"c\"] \"float amount\" ";
   CHECK(material_of(two + other + "0.7\n").kind == MaterialKind::conductor);
   CHECK(material_of(two + other + "0.2\n").kind == MaterialKind::diffuse);
-  CHECK(has_warning(import_world(two + other + "0.2\n" + triangle), "more weight"));
+  CHECK(has_warning(import_world(two + other + "0.2\n" + triangle), "larger weight"));
   CHECK(reason_of("Material \"mix\" \"string materials\" [\"a\" \"b\"]").find("\"a\"") !=
         std::string::npos);
   std::string nested = two;

@@ -208,12 +208,12 @@ TEST_CASE("a modifier that no file here defines is grey, and told of") {
 }
 
 TEST_CASE("what cannot be read is an error with its place") {
-  CHECK(error_of(grey + "grey sphere s 0 0 4 1 x") == "scene.rad:2:23: 'x' is no number");
+  CHECK(error_of(grey + "grey sphere s 0 0 4 1 x") == "scene.rad:2:23: 'x' is not a number");
   CHECK(error_of(grey + "grey sphere s 0 0 4 1").find("the file ends within") != std::string::npos);
-  CHECK(error_of("void wood w 0 0 0").find("'wood' is no type") != std::string::npos);
+  CHECK(error_of("void wood w 0 0 0").find("'wood' is not a Radiance type") != std::string::npos);
   CHECK(error_of("!xform ../x.rad").find("leads out of the scene's folder") != std::string::npos);
-  CHECK(error_of("!xform scene.rad").find("without end") != std::string::npos);
-  CHECK(error_of("void alias a b\nvoid alias b a\na sphere s 0 0 4 0 0 0 1").find("without end") !=
+  CHECK(error_of("!xform scene.rad").find("endlessly") != std::string::npos);
+  CHECK(error_of("void alias a b\nvoid alias b a\na sphere s 0 0 4 0 0 0 1").find("endlessly") !=
         std::string::npos);
   CHECK(error_of(grey + "!genbox grey b 1 1 1 | xform -a 1000 -t 1 0 0 -a 1000 -t 0 1 0")
             .find("100000 copies") != std::string::npos);

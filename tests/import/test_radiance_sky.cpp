@@ -181,7 +181,7 @@ TEST_CASE("a sky's function is looked up, turned, or refused by name") {
   folder.write("endless.cal", "a(x) = a(x + 1);\nb = a(1);");
   CHECK_THROWS_WITH_AS(
       import_radiance(folder.write("e.rad", "void brightfunc f 2 b endless.cal 0 0\nf" + sky)),
-      doctest::Contains("does not come to an end"), InputError);
+      doctest::Contains("does not end"), InputError);
 }
 
 // A source of full angle 2 h, seen along its axis, gives an irradiance of pi sin² h per radiance.
