@@ -337,10 +337,10 @@ void Painter::put(const Orders& orders, const Work& work, const Image& image, do
 std::string Painter::stage_of(const Work& work) const {
   const std::string pass = fmt::format("step {} of {}", work.next + 1, work.passes.size());
   if (work.dimmer >= 0)
-    return fmt::format("Rendering {} by itself, {}", lighting_->dimmers()[size_t(work.dimmer)].name,
+    return fmt::format("Rendering {} alone, {}", lighting_->dimmers()[size_t(work.dimmer)].name,
                        pass);
   if (work.layer == "second")
-    return fmt::format("Rendering by {}, {}", work.method.row().name, pass);
+    return fmt::format("Rendering with {}, {}", work.method.row().name, pass);
   return "Refining, " + pass;
 }
 
