@@ -46,7 +46,7 @@ void check_refused(const Finished& f, int status, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("a time limit ends a render with a whole picture, says so, and is no failure") {
+TEST_CASE("a time limit ends a render with a complete picture, a message and exit status 0") {
   for (const std::string method : {"certified", "path"}) {
     const Folder folder;
     const std::string scene = folder.write("room.pbrt", bright_room_pbrt());
@@ -65,7 +65,7 @@ TEST_CASE("a time limit ends a render with a whole picture, says so, and is no f
   }
 }
 
-TEST_CASE("stopped, and gone on with: the bytes of an uninterrupted run") {
+TEST_CASE("a resumed run has the same bytes as an uninterrupted one") {
   for (const std::string method : {"path", "certified"})
     for (const int which : {SIGINT, SIGTERM}) {
       const Folder folder;
@@ -92,7 +92,7 @@ TEST_CASE("stopped, and gone on with: the bytes of an uninterrupted run") {
     }
 }
 
-TEST_CASE("checkpoints that cannot be gone on from, and those that would be lost") {
+TEST_CASE("checkpoints that cannot be resumed, or would be overwritten, are refused") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt),
                     checkpoint = folder.path("c.chk");
@@ -128,7 +128,7 @@ TEST_CASE("checkpoints that cannot be gone on from, and those that would be lost
   CHECK(folder.names() == Words{"c.chk", "room.pbrt"});
 }
 
-TEST_CASE("shares are joined to the bytes of one run, in every format") {
+TEST_CASE("merged parts have the same bytes as a single run, in every format") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", bright_room_pbrt());
   for (const std::string method : {"certified", "fixed"})
@@ -156,7 +156,7 @@ TEST_CASE("shares are joined to the bytes of one run, in every format") {
     }
 }
 
-TEST_CASE("shares that do not make up a picture are refused, by a line each") {
+TEST_CASE("parts that do not make up a picture are refused, each with one line") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt), out = folder.path("out.exr");
   const auto part = [&](const std::string& name, const Words& options) {
@@ -210,7 +210,7 @@ TEST_CASE("shares that do not make up a picture are refused, by a line each") {
                   "--part");
 }
 
-TEST_CASE("an error limit: told, and told where it is not reached") {
+TEST_CASE("an error limit is reported, and a warning says if it is not reached") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", bright_room_pbrt());
   const auto render = [&](const Words& options) {
@@ -226,7 +226,7 @@ TEST_CASE("an error limit: told, and told where it is not reached") {
   CHECK(contains(read_file(folder.path("s.json")), "\"ended_by\": \"complete\""));
 }
 
-TEST_CASE("a disk too small for checkpoints: told, and the picture is made all the same") {
+TEST_CASE("a disk too small for checkpoints causes a warning, and the picture is finished anyway") {
   const auto limit_files = [] {
     const rlimit limit{64 << 10, 64 << 10};
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -256,7 +256,7 @@ TEST_CASE("a disk too small for checkpoints: told, and the picture is made all t
   }
 }
 
-TEST_CASE("a folder that vanishes under way, and one that nobody may write in") {
+TEST_CASE("a folder that vanishes during the run, and one without write permission") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   std::filesystem::create_directory(folder.path("out"));
@@ -290,7 +290,7 @@ TEST_CASE("a folder that vanishes under way, and one that nobody may write in") 
   CHECK(std::filesystem::is_empty(folder.path("locked")));
 }
 
-TEST_CASE("what killed programs left half-written goes, and nobody else's files") {
+TEST_CASE("half-written files of killed programs are removed, files of others are not") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   const Words names{".troffer-7-0.tmp", ".troffer-8-0.tmp", ".troffer-9-0.tmp", "my.tmp"};

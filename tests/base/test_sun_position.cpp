@@ -61,7 +61,7 @@ TEST_CASE("times as ISO 8601 writes them") {
   }
 }
 
-TEST_CASE("a time that cannot be read names the part that is wrong") {
+TEST_CASE("the error for an unreadable time names the wrong part") {
   for (const auto& [text, part] :
        {std::pair<const char*, const char*>{"2026-13-21T12:00Z", "the month 13"},
         {"2026-06-31T12:00Z", "the day 31 does not lie between 1 and 30"},

@@ -160,7 +160,7 @@ TEST_CASE("lights, cameras and materials survive in every format") {
   }
 }
 
-TEST_CASE("a file of pbrt's that is written is read as exactly the same scene") {
+TEST_CASE("a pbrt file that is written again is read as exactly the same scene") {
   const TempFolder folder;
   const Scene scene = import_scene(folder.write("in.pbrt", world));
   CHECK(export_scene(scene, folder.path("out.pbrt")).empty());
@@ -177,7 +177,7 @@ TEST_CASE("a file of pbrt's that is written is read as exactly the same scene") 
   CHECK(metal.roughness.value == 0.5f);  // the GGX width itself
 }
 
-TEST_CASE("a portal stays where it is, in scenes far from the origin too") {
+TEST_CASE("a portal keeps its place, also in scenes far from the origin") {
   const TempFolder folder;
   const std::string text =
       "WorldBegin\nTranslate 40000 0 0\n"
@@ -193,7 +193,7 @@ TEST_CASE("a portal stays where it is, in scenes far from the origin too") {
   CHECK(length(corner - Vec3d{40001, 3, 2}) < 1e-3);
 }
 
-TEST_CASE("textures, masks and scenes far from the origin survive") {
+TEST_CASE("textures, masks and scenes far from the origin survive a round trip") {
   const TempFolder folder;
   std::string pfm = "PF\n2 1\n-1.0\n";
   for (const float v : {0.25f, 0.5f, 0.75f, 1.0f, 0.5f, 0.0f})
@@ -230,7 +230,7 @@ TEST_CASE("textures, masks and scenes far from the origin survive") {
 }
 
 TEST_CASE(
-    "two sets of texture coordinates, sheen and grain survive in glTF, and are told of else") {
+    "two sets of texture coordinates, sheen and anisotropy survive in glTF; other formats warn") {
   const TempFolder folder;
   Scene scene;
   const Texture t = two_texels(0, 255);
@@ -270,7 +270,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("clear coats and thin films survive where the format has them") {
+TEST_CASE("clear coats and thin films survive in formats that have them") {
   const TempFolder folder;
   Scene scene;
   const Texture t = two_texels(51, 255);
@@ -346,7 +346,7 @@ TEST_CASE("clear coats and thin films survive where the format has them") {
   CHECK(pbrt.materials[pbrt.meshes[0].material].coat.value == 1);
 }
 
-TEST_CASE("what glass absorbs survives, and what is lost is told") {
+TEST_CASE("absorption of glass survives, and losses cause warnings") {
   const TempFolder folder;
   const Scene scene = import_scene(folder.write(
       "in.pbrt",
@@ -401,7 +401,7 @@ TEST_CASE("a measured luminaire keeps its flux") {
   }
 }
 
-TEST_CASE("only endings that can be written are taken, and folders that are there") {
+TEST_CASE("only supported endings and existing folders are accepted") {
   CHECK_THROWS_AS(check_scene_format("a.obj"), UsageError);
   const TempFolder folder;
   CHECK_THROWS_AS(export_scene(Scene(), folder.path("none/a.glb")), EnvironmentError);

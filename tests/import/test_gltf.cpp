@@ -38,7 +38,7 @@ Scene scene_of_repository(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("a square is read with its normals, texture coordinates and name") {
+TEST_CASE("a square is read with normals, texture coordinates and name") {
   const Scene scene = import_text(square_scene("[{'mesh':0,'name':'wall'}]", plain_material));
   REQUIRE(scene.meshes.size() == 1);
   const Mesh& mesh = scene.meshes[0];
@@ -176,7 +176,7 @@ TEST_CASE("a hierarchy of any depth is read without recursion") {
   CHECK(scene.meshes.size() == 1);
 }
 
-TEST_CASE("extensions that are not known are warnings, stronger ones where a file requires them") {
+TEST_CASE("unknown extensions are warnings, stronger ones if a file requires them") {
   const Scene scene = import_text(square_scene(
       "[{'mesh':0}]", plain_material + ",'extensionsUsed':['ABC_clouds','KHR_materials_ior',"
                                        "'ABC_rain'],'extensionsRequired':['ABC_rain']"));
@@ -187,7 +187,7 @@ TEST_CASE("extensions that are not known are warnings, stronger ones where a fil
   CHECK_FALSE(has_warning(scene, "KHR_materials_ior"));
 }
 
-TEST_CASE("what a scene lists is shown once, and where its parents place it") {
+TEST_CASE("a listed node is shown once, where its parents place it") {
   const std::string nodes =
       "[{'translation':[0,0,5],'children':[1]},{'mesh':0,'translation':[0,0,2]}]";
   const auto heights = [&](const std::string& listed) {
@@ -217,7 +217,7 @@ TEST_CASE("errors name line and column of the offending value") {
   CHECK(e.line() == 2);
 }
 
-TEST_CASE("values of a wrong type are errors, never something else") {
+TEST_CASE("values of a wrong type are always errors") {
   for (const std::string value : {"'x'", "-1", "1.5", "1e300", "null", "[]", "{}", "true",
                                   "18446744073709551615", "99999999999999999999999"}) {
     CAPTURE(value);

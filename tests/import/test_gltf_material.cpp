@@ -212,7 +212,8 @@ TEST_CASE("KHR_materials_pbrSpecularGlossiness: a dielectric of that reflectance
         doctest::Approx(1 - 0.5 * 0x66 / 255.0).epsilon(0.005));
 }
 
-TEST_CASE("what materials cannot show is told, and approximated where that is nearer") {
+TEST_CASE(
+    "unsupported properties of materials cause a warning, and are approximated where possible") {
   const Scene unlit = with_material("{'extensions':{'KHR_materials_unlit':{}}}");
   CHECK(only_material(unlit).kind == MaterialKind::diffuse);
   CHECK(has_warning(unlit, "unlit"));
@@ -320,7 +321,7 @@ TEST_CASE("clear coats and thin films: factors and textures") {
   CHECK(m.specular_color.value == Rgb{1});
 }
 
-TEST_CASE("a data URI that is broken is told of though nothing shows its image") {
+TEST_CASE("a broken data URI causes a warning even if its image is unused") {
   const Scene scene = with_material("{}",
                                     ",'images':[{'uri':'data:image/png;base64,A'},"
                                     "{'uri':'data:image/png;base64,AAAA'}]");
@@ -328,7 +329,7 @@ TEST_CASE("a data URI that is broken is told of though nothing shows its image")
   CHECK(scene.warnings.total() == 1);
 }
 
-TEST_CASE("a thin body is a sheet and keeps its film, be it one that absorbs") {
+TEST_CASE("a thin body is a sheet and keeps its film, also if it absorbs") {
   for (const float absorption : {0.0f, 1.0f}) {
     Scene scene;
     Material& glass = scene.materials.emplace_back();

@@ -70,7 +70,7 @@ TEST_CASE("a glow with a negative radius gives no light") {
               .lights.size() == 1);
 }
 
-TEST_CASE("patterns that are the same everywhere are factors") {
+TEST_CASE("constant patterns are factors") {
   const std::string dim = "void brightfunc d 2 A1 . 0 1 .5\n";
   CHECK(worn(import_text(dim + "d plastic m 0 0 5 .8 .8 .8 0 0\nm" + square)).base_color.value.r ==
         doctest::Approx(.4));
@@ -86,7 +86,7 @@ TEST_CASE("patterns that are the same everywhere are factors") {
 }
 
 // E = L A cos / (d + f)², where f is the length of the aiming vector.
-TEST_CASE("spotlight: its focal distance, its beam, whatever surface it is on") {
+TEST_CASE("spotlight: focal distance and beam are correct on any surface") {
   const auto spot = [](const std::string& aim, const std::string& surface) {
     return import_text("void spotlight s 0 0 7 1000 1000 1000 30 " + aim + "\ns " + surface);
   };

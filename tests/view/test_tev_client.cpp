@@ -87,7 +87,7 @@ void check_update(Packet p, const Image& image) {
 
 }  // namespace
 
-TEST_CASE("tev gets an image of the picture's size, and then the picture, again and again") {
+TEST_CASE("tev gets an image of the picture's size and then repeated updates") {
   const Listener tev;
   TevClient client("127.0.0.1:" + std::to_string(tev.port));
   const int socket = tev.accepted();
