@@ -31,7 +31,7 @@ void add_daylight_options(CLI::App& command, DaylightOptions& o) {
   command.add_option(
       "--sky", o.sky,
       "Sky: even (uniform), overcast, clear or cie:1 to cie:15, each with ,LUX on a horizontal "
-      "plane or without; perez:DNI,DHI in W/m²; none [even if the scene has no light]");
+      "plane or without; perez:DNI,DHI in W/m²; or none [for scenes without light: even]");
   command.add_option("--sun", o.sun,
                      "Sun, in degrees clockwise from north and above the horizon; LUX on a plane "
                      "that faces it; adds a clear sky unless --sky or --environment is given");

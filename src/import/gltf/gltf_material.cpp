@@ -268,7 +268,7 @@ class GltfMaterials::Reader {
       result_.is_blended = true;
       material_.is_alpha_masked = material_.is_alpha_blended = base_has_alpha();
     } else if (mode != "OPAQUE") {
-      node_.member("alphaMode").fail("'" + printable(mode) + "' is no alpha mode");
+      node_.member("alphaMode").fail("'" + printable(mode) + "' is not an alpha mode");
     }
     if (material_.is_alpha_masked) material_.alpha.texture = material_.base_color.texture;
   }
