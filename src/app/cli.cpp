@@ -25,8 +25,8 @@ namespace troffer {
 namespace {
 
 constexpr const char* solution_help =
-    "certified: keep the cells in this file and continue from them; certified and kj92: take the "
-    "radiosity that troffer radiosity wrote";
+    "certified: file that stores cache cells; they are read if it exists, and new ones are added. "
+    "certified and kj92: radiosity solution made by troffer radiosity";
 
 // Values as typed. They become options after parsing, where errors throw UsageError.
 struct RawOptions {
@@ -102,34 +102,36 @@ void add_kj92(CLI::App* r, RenderCommand& c, RawOptions& raw) {
                 "--most-rays everywhere")
       ->check(number_between(0, 1000))
       ->capture_default_str();
-  r->add_option("--most-rays", tree.most_rays, "Most shadow rays per source and viewing ray")
+  r->add_option("--most-rays", tree.most_rays,
+                "Maximum number of shadow rays per source and viewing ray")
       ->check(whole_number_between(1, 1 << 16))
       ->capture_default_str();
   r->add_option("--mean-change", tree.mean_change,
-                "Also stop where the mean changes by less than this; 0: never")
+                "Also stop when the mean changes by less than this; 0: never")
       ->check(change)
       ->capture_default_str();
   r->add_option("--level-difference", tree.level_difference,
-                "Levels by which neighbouring cells of a source may differ")
+                "Number of levels by which neighbouring leaves of the bintree may differ")
       ->check(whole_number_between(0, 24))
       ->capture_default_str();
   r->add_option("--probe-rays", sampling.probe_rays,
-                "Rays to strong sources that seem wholly hidden or wholly visible")
+                "Shadow rays to a strong source that seems fully hidden or fully visible")
       ->check(whole_number_between(1, 1 << 10))
       ->capture_default_str();
   r->add_option("--coherence", raw.coherence,
-                "Reuse the sampling pattern of the viewing ray before")
+                "Reuse the sampling pattern of the previous viewing ray")
       ->check(one_of({"on", "off"}))
       ->capture_default_str();
   r->add_flag("--ratio", sampling.uses_ratio,
               "Multiply the sampled visible share by the exact unoccluded light");
-  r->add_option("--selection", raw.selection,
-                "The radiosity solution selects the sources; off: all emitters, everywhere")
+  r->add_option(
+       "--selection", raw.selection,
+       "The radiosity solution selects the sources; off: all emitters are sources everywhere")
       ->check(one_of({"on", "off"}))
       ->capture_default_str();
   r->add_option(
        "--select", c.selected_lights,
-       "Only these sources may be sampled; the light of all others counts as general light")
+       "Only these sources may be sampled; the light of all others counts as general radiosity")
       ->delimiter(',')
       ->allow_extra_args(false);
   r->add_option("--solution", c.solution, solution_help);
@@ -138,10 +140,11 @@ void add_kj92(CLI::App* r, RenderCommand& c, RawOptions& raw) {
 // Adds the options of camera and image size.
 void add_camera(CLI::App* r, RenderCommand& c, RawOptions& raw) {
   r->add_option("--size", raw.size, "Image size in pixels [the scene's]");
-  r->add_option(
-      "--crop", raw.crop,
-      "Only this window of the image, in pixels from the top left; X1 and Y1 are outside");
-  r->add_option("--camera", c.camera, "Camera by its name in troffer info [the first]");
+  r->add_option("--crop", raw.crop,
+                "Render only this window, in pixels from the top left; column X1 and row Y1 are "
+                "not included");
+  r->add_option("--camera", c.camera,
+                "Name of the camera; troffer info lists the names [the first]");
   r->add_option("--eye", c.eye, "Position of the camera, instead of the scene's cameras");
   r->add_option("--target", c.target, "Point that --eye looks at");
   r->add_option("--fov", c.fov_deg,
@@ -157,21 +160,20 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
       ->required()
       ->allow_extra_args(false);
   r->add_flag("--preview", c.has_preview,
-              "Write -o at once, coarse, and again every few seconds while the picture improves");
+              "Write a coarse picture to -o at once, and a better one every few seconds");
   add_method(*r, c.method);
   r->add_option("--spp", c.options.spp,
                 "Viewing rays per pixel, before refinement; powers of two are stratified best")
       ->check(whole_number_between(1, 1 << 20))
       ->capture_default_str();
-  r->add_option(
-       "--max-spp", c.options.max_spp,
-       "Most viewing rays of a pixel where neighbouring pixels differ [certified: 512 times "
-       "--spp, and 256 times in the mean of 8 x 8 pixels; with --indirect none 256 and "
-       "128, with radiosity 4; other methods: --spp]")
+  r->add_option("--max-spp", c.options.max_spp,
+                "Maximum number of viewing rays in a pixel that differs from its neighbours "
+                "[certified: 512 times --spp, and 256 times on average over 8 x 8 pixels; with "
+                "--indirect none 256 and 128, with radiosity 4; other methods: --spp]")
       ->check(whole_number_between(1, 1 << 20));
   r->add_option("--shadow-rays", raw.shadow_rays,
-                "Shadow rays per source and viewing ray [64]; kj92: the initial ones [8], 0 "
-                "samples no source")
+                "Shadow rays per source and viewing ray [64]; kj92: number of initial shadow rays "
+                "[8], 0: no source is sampled")
       ->check(whole_number_between(0, 1 << 20));
   add_kj92(r, c, raw);
   r->add_option("--error", c.options.error,
@@ -180,27 +182,27 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
       ->capture_default_str();
   add_indirect(*r, raw.indirect);
   r->add_option("--depth", c.options.depth,
-                "Most bounces: 0 shows emission alone, 1 adds direct light [no limit]")
+                "Maximum number of bounces: 0 shows emission only, 1 adds direct light [no limit]")
       ->check(whole_number_between(0, 1 << 20));
   add_camera(r, c, raw);
   add_light_choice(*r, c.lights);
   add_threads(*r, c.options.threads);
   add_seed(*r, c.options.seed);
-  r->add_option("--aov", raw.aovs, "Further layers, for .exr files")
+  r->add_option("--aov", raw.aovs, "Additional layers for .exr files")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(one_of(split_at(aov_names(), ',')));
   r->add_option(
       "--exposure", c.exposure,
-      "For .png: stops, or auto [0; auto where the picture would be nearly black or white]");
-  r->add_option("--tone-map", c.tone_map, "Tone curve, for .png")
+      "Exposure of .png in stops, or auto [0; auto if the picture would be nearly black or white]");
+  r->add_option("--tone-map", c.tone_map, "Tone curve of .png")
       ->check(one_of({"filmic", "none"}))
       ->capture_default_str();
   add_daylight_options(*r, c.daylight);
   add_lasting_options(*r, c.lasting);
   r->add_option("--stats", c.stats, "JSON file for counts, times, settings and the plan");
   r->add_flag("--explain", c.explains,
-              "Say what the method chooses for this picture, why, and what it expects it to cost");
+              "Print what the method chooses for this picture, the reason and the expected cost");
   r->add_flag("--quiet", c.is_quiet, "No progress bar, notes or warnings");
 }
 
@@ -217,13 +219,12 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
   CLI::App* s = app.add_subcommand("measure", "Measure irradiance and illuminance at points");
   add_scene_choice(*s, c.scene);
   s->add_option("--points", c.points, "CSV file with columns x,y,z,nx,ny,nz");
-  s->add_option(
-       "--grid", c.grid.grids,
-       "NODE[,HEIGHT[,SPACING]]: points over the upward surface of this part of the scene, "
-       "in metres [on it, EN 12464-1's]; may be repeated")
+  s->add_option("--grid", c.grid.grids,
+                "Grid of points over the upward surface of a node, with the height above it and "
+                "the spacing in metres [0; spacing by EN 12464-1]; may be repeated")
       ->allow_extra_args(false);
   s->add_option("--border", c.grid.border,
-                "Strip along the rim of --grid without points, in metres")
+                "Width of the strip without points along the edge of --grid, in metres")
       ->check(number_between(0, 1000))
       ->capture_default_str();
   s->add_option("-o,--output", c.output, "CSV file [standard output]");
@@ -235,7 +236,7 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
                 "certified: allowed standard error of a point, relative to its light")
       ->check(number_between(1e-6, 1))
       ->capture_default_str();
-  s->add_option("--depth", c.depth, "Most bounces: 1 is direct light alone [no limit]")
+  s->add_option("--depth", c.depth, "Maximum number of bounces: 1 is direct light only [no limit]")
       ->check(whole_number_between(0, 1 << 20));
   add_indirect(*s, raw.indirect);
   add_light_choice(*s, c.lights);

@@ -31,7 +31,7 @@ namespace {
 
 BakedShading shading_of(const BakeCommand& c) {
   if (int(c.has_vertex_colors) + int(c.is_unlit) + int(c.is_emissive) > 1)
-    throw UsageError("only one of --vertex-colours, --unlit and --emissive can be had at a time");
+    throw UsageError("--vertex-colours, --unlit and --emissive exclude each other: give one");
   return c.has_vertex_colors ? BakedShading::vertex_colors
          : c.is_unlit        ? BakedShading::unlit
          : c.is_emissive     ? BakedShading::emissive
@@ -190,12 +190,16 @@ void add_bake(CLI::App& app, BakeCommand& c) {
       ->required();
   add_texel_options(s, c);
   s->add_flag("--vertex-colours,--vertex-colors", c.has_vertex_colors,
-              "Light as vertex colours, which multiply unlit base colours");
-  s->add_flag("--unlit", c.is_unlit, "Unlit surfaces that look lit, for viewers without lights");
-  s->add_flag("--emissive", c.is_emissive, "Black surfaces that emit their light, in cd/m2");
-  s->add_option("--exposure", c.exposure, "For --unlit and --vertex-colours: stops, or auto")
+              "Write the light as vertex colours, which multiply unlit base colours");
+  s->add_flag("--unlit", c.is_unlit,
+              "Write unlit materials that look lit, for viewers that compute no light");
+  s->add_flag("--emissive", c.is_emissive,
+              "Write black surfaces that emit the light they reflect, in cd/m2");
+  s->add_option("--exposure", c.exposure,
+                "Exposure of --unlit and --vertex-colours in stops, or auto")
       ->capture_default_str();
-  s->add_option("--hdr", c.hdr, "Format of the irradiance in lx, written beside the scene")
+  s->add_option("--hdr", c.hdr,
+                "Format of the irradiance image (lx) that is written beside the scene")
       ->check(one_of({"exr", "hdr", "none"}))
       ->capture_default_str();
   s->add_option("--spp", c.spp, "Samples per texel, or vertex")
@@ -206,12 +210,11 @@ void add_bake(CLI::App& app, BakeCommand& c) {
       ->check(number_between(1e-6, 1))
       ->capture_default_str();
   add_indirect(*s, c.indirect);
-  s->add_option("--depth", c.depth, "Most bounces: 1 is direct light alone [no limit]")
+  s->add_option("--depth", c.depth, "Maximum number of bounces: 1 is direct light only [no limit]")
       ->check(whole_number_between(0, 1 << 20));
-  s->add_option(
-      "--solution", c.solution,
-      "certified: keep the cells in this file and continue from them; certified and kj92: "
-      "take the radiosity that troffer radiosity wrote");
+  s->add_option("--solution", c.solution,
+                "certified: file that stores cache cells; they are read if it exists, and new ones "
+                "are added. certified and kj92: radiosity solution made by troffer radiosity");
   add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
   c.daylight.adds_default_sky = false;  // lightmaps hold measured values
@@ -224,7 +227,7 @@ int check_and_bake(const CLI::App& command_line, BakeCommand command) {
   BakeOptions options = options_of(command);
   if (command_line.get_option("--texels-per-metre")->count() > 0 &&
       command_line.get_option("--resolution")->count() > 0)
-    throw UsageError("--resolution and --texels-per-metre both say how fine: give one");
+    throw UsageError("--resolution and --texels-per-metre both set the texel size: give one");
   warn_of_unused_options(command_line, options.light.method, command.is_quiet);
   return run_bake(command, std::move(options));
 }

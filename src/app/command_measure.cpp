@@ -28,8 +28,8 @@ void tell_of_points(const PreparedScene& scene, const std::vector<MeasuringPoint
                     const MeasureResult& result) {
   if (!result.in_surfaces.empty())
     fmt::print(stderr,
-               "warning: {} of {} points (the first is number {}) stand exactly in a surface that "
-               "is not theirs; measured just before its front\n",
+               "warning: {} of {} points (the first is number {}) lie exactly in another surface; "
+               "measured just in front of it\n",
                result.in_surfaces.size(), points.size(), result.in_surfaces.front() + 1);
   for (const std::string& text : misplaced_points(scene, points, result))
     fmt::print(stderr, "warning: {}\n", text);
@@ -84,7 +84,7 @@ int write_points(const MeasureCommand& c, const PointList& list, const MeasureRe
   else if (!c.output.empty())
     left.note(c.output, "");
   fmt::print(stderr, "interrupted after {} of {} points: {}\n", finished, list.points.size(),
-             finished > 0 && c.output.empty() ? "printed these" : left.text());
+             finished > 0 && c.output.empty() ? "these were printed" : left.text());
   return exit_interrupted;
 }
 

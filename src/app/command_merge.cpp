@@ -71,7 +71,7 @@ void add(const LayeredImage& part, const std::string& file, Joined& all) {
   const int width = all.note.asked[2] - all.note.asked[0],
             height = all.note.asked[3] - all.note.asked[1];
   if (x0 < 0 || y0 < 0 || picture.width > width - x0 || picture.height > height - y0)
-    refuse(file, "has pixels outside of the picture");
+    refuse(file, "has pixels outside the picture");
   if (part.layers.size() != all.layers.size()) refuse(file, "has other layers");
   for (size_t l = 0; l < all.layers.size(); ++l) {
     const Layer& from = part.layers[l];
@@ -92,13 +92,13 @@ Joined join(const MergeCommand& c) {
   Joined all;
   for (const std::string& file : c.parts) {
     const LayeredImage part = read_layers(file, most_pixels);
-    if (part.note.empty()) refuse(file, "no part of a picture (troffer render --part)");
+    if (part.note.empty()) refuse(file, "not a part of a picture (made by troffer render --part)");
     const PartNote note = parse_part_note(part.note, file);
     if (all.layers.empty())
       begin(note, part, c, all);
     else
       check_note(note, all, file, c.parts[0]);
-    if (!note.is_complete) refuse(file, "this part was broken off: render it to the end");
+    if (!note.is_complete) refuse(file, "this part is unfinished: render it to the end");
     std::string& before = all.files[size_t(note.share.part - 1)];
     if (!before.empty())
       refuse(file, fmt::format("part {} of {}, as {}", note.share.part, note.share.parts, before));
@@ -113,11 +113,11 @@ Joined join(const MergeCommand& c) {
 }  // namespace
 
 void add_merge(CLI::App& app, MergeCommand& c) {
-  CLI::App* s = app.add_subcommand("merge", "Join the parts of a picture that render --part made");
+  CLI::App* s = app.add_subcommand("merge", "Join the parts of a picture made by render --part");
   s->add_option("output", c.output, "Picture to write: .exr .hdr .pfm .png")->required();
   s->add_option("parts", c.parts, "All parts, in any order: .exr")->required();
-  s->add_option("--exposure", c.exposure, "For .png: stops, or auto [as render]");
-  s->add_option("--tone-map", c.tone_map, "Tone curve, for .png")
+  s->add_option("--exposure", c.exposure, "Exposure of .png in stops, or auto [as for render]");
+  s->add_option("--tone-map", c.tone_map, "Tone curve of .png")
       ->check(one_of({"filmic", "none"}))
       ->capture_default_str();
   s->add_flag("--quiet", c.is_quiet, "No warnings");

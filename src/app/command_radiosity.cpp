@@ -37,7 +37,7 @@ void check_command(const RadiosityCommand& c) {
       if (ending == other)
         throw UsageError("radiosity writes .gltf, .glb or a solution (.trad), not ." + ending);
     if (c.makes_cells && (ending == "gltf" || ending == "glb"))
-      throw UsageError("--cells are not shown in ." + ending + ": give a file for --solution");
+      throw UsageError("--cells cannot be written as ." + ending + ": give a file for --solution");
   }
 }
 
@@ -81,8 +81,8 @@ void print_summary(const RadiosityResult& r) {
   fmt::print("{} shots, {:.1f} million rays, {:.1f} s\n", s.shots, double(s.rays) * 1e-6,
              r.seconds);
   fmt::print(
-      "of the emitted power {:.2f} % is absorbed, {:.2f} % left to specular surfaces, {:.2f} % "
-      "escaped, {:.2f} % not shot, {:.2f} % is missing\n",
+      "of the emitted power, {:.2f} % is absorbed, {:.2f} % is left to specular surfaces, {:.2f} % "
+      "escapes, {:.2f} % is unshot, {:.2f} % is unaccounted for\n",
       percent(b.absorbed, b.emitted), percent(b.lost_to_specular, b.emitted),
       percent(b.escaped, b.emitted), percent(b.unshot, b.emitted),
       percent(b.unaccounted, b.emitted));
@@ -151,7 +151,7 @@ int leave_unfinished(const RadiosityCommand& c, const PreparedScene& scene,
   if (!c.stats.empty()) files.add(left.place(c.stats), statistics_json(c, result, seconds, up));
   files.commit();
   fmt::print(stderr, "interrupted after {} shots: {}{}\n", s.shots, left.text(),
-             s.shots > 0 ? "; render does not take an unfinished solution" : "");
+             s.shots > 0 ? "; render does not accept an unfinished solution" : "");
   return exit_interrupted;
 }
 
@@ -161,21 +161,21 @@ void add_radiosity(CLI::App& app, RadiosityCommand& c) {
   CLI::App* s = app.add_subcommand("radiosity", "Compute the radiosity of a scene's surfaces");
   add_scene_choice(*s, c.scene);
   s->add_option("-o,--output", c.outputs,
-                ".gltf, .glb: mesh and light to look at; any other ending, such as .trad: the "
-                "solution, for --solution; may be repeated")
+                ".gltf or .glb: mesh and light for viewers; any other ending, such as .trad: "
+                "solution for --solution; may be repeated")
       ->required()
       ->allow_extra_args(false);
   s->add_flag("--cells", c.makes_cells,
-              "Cells of all surfaces for --method certified instead: for --solution of render and "
-              "measure");
+              "Compute cache cells of all surfaces instead, for --method certified and --solution "
+              "of render and measure");
   s->add_option("--element-size", c.options.meshing.element_size,
-                "Longest edge of an element, metres [by the scene]")
+                "Longest edge of an element, in metres [chosen for about 4000 elements]")
       ->check(number_above_zero());
   s->add_option("--patch-size", c.options.meshing.patch_size,
-                "Longest edge of a patch, metres [by the element size]")
+                "Longest edge of a patch, in metres [derived from the element size]")
       ->check(number_above_zero());
   s->add_option("--stored", c.options.stored_per_point,
-                "Sources whose light is stored separately, per sample point")
+                "Number of sources whose light is stored separately at each sample point")
       ->check(whole_number_between(0, max_stored))
       ->capture_default_str();
   s->add_option("--unshot", c.options.unshot_fraction,

@@ -68,7 +68,7 @@ Camera place_camera(const PreparedScene& scene, const RenderCommand& c, const Ve
         stderr,
         "warning: the scene has no camera; one is placed {} (--eye, --target and --up choose "
         "another)\n",
-        is_room(scene) ? "inside its bounds" : "before it");
+        is_room(scene) ? "inside its bounds" : "in front of it");
   return framing_camera(scene, up);
 }
 
@@ -168,8 +168,7 @@ int tell(const RenderResult& result, const RenderCommand& c, double total, const
       return exit_interrupted;
     case RenderEnd::out_of_time:
       fmt::print(stderr,
-                 "time limit: wrote the picture as it was after {:.1f} s, {:.0f} % of its "
-                 "work{}\n",
+                 "time limit: wrote the picture after {:.1f} s, with {:.0f} % of the work done{}\n",
                  total, 100 * s.share_done,
                  s.gaps_filled == 0
                      ? ""
@@ -181,8 +180,8 @@ int tell(const RenderResult& result, const RenderCommand& c, double total, const
     case RenderEnd::complete:
       if (!c.is_quiet && s.estimated_error > c.lasting.error_limit && c.lasting.error_limit > 0)
         fmt::print(stderr,
-                   "warning: the error told of the picture is {:.3g}, more than --error-limit: "
-                   "--max-spp, --spp and --error ask for more\n",
+                   "warning: the estimated error of the picture is {:.3g}, above --error-limit: "
+                   "raise --max-spp or --spp, or lower --error\n",
                    s.estimated_error);
       if (!c.is_quiet) tell_written(c, total, s.estimated_error);
   }

@@ -64,7 +64,7 @@ void add_view(CLI::App& app, ViewCommand& c) {
       ->check(whole_number_between(1, 65535));
   s->add_option("--size", c.size, "Picture size in pixels [about 640x480]");
   s->add_option("--camera", c.camera,
-                "Camera to start from, by its name in troffer info [the first]");
+                "Camera to start with; troffer info lists the names [the first]");
   add_method(*s, c.method);
   s->add_option("--error", c.error, "Standard error at which a picture is finished")
       ->check(number_between(1e-3, 1))
@@ -100,8 +100,8 @@ int run_view(const ViewCommand& c) {
   if (std::any_of(warnings.begin(), warnings.end(),
                   [](const Warning& w) { return w.text == default_sky_warning; })) {
     settings.notice =
-        "The scene has no light. An even sky of 10 000 lx, which it does not have, lights this "
-        "picture: its values say nothing about the scene. --sky none keeps it dark.";
+        "The scene has no light. A uniform sky of 10 000 lx was added to show it, so values in "
+        "this picture say nothing about the scene. --sky none keeps it dark.";
   }
   settings.camera = camera_named(scene, c.camera);
   settings.up = normalize(up.decision.up);

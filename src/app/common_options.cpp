@@ -21,8 +21,8 @@ void add_method(CLI::App& command, std::string& method) {
 void add_indirect(CLI::App& command, std::string& indirect) {
   command
       .add_option("--indirect", indirect,
-                  "Reflected light. auto: what suits the method; cells: gathered (certified); "
-                  "radiosity: interpolated (certified, kj92); none: direct light only")
+                  "Reflected light. auto: chosen by the method; cells: gathered from cache cells "
+                  "(certified); radiosity: interpolated (certified, kj92); none: direct light only")
       ->check(one_of({"auto", "cells", "radiosity", "none"}))
       ->capture_default_str();
 }
@@ -43,7 +43,8 @@ void add_threads(CLI::App& command, int& threads) {
 }
 
 void add_seed(CLI::App& command, uint64_t& seed) {
-  command.add_option("--seed", seed, "Seed of the random numbers: another one, other noise")
+  command
+      .add_option("--seed", seed, "Seed of the random numbers; another seed gives different noise")
       ->capture_default_str();
 }
 

@@ -40,7 +40,7 @@ Grid parse_grid(const std::string& text) {
     throw UsageError(fmt::format("--grid: a height of {} m is more than 1000 m", g.height));
   if (first && !(g.spacing >= 1e-3 && g.spacing <= 1e5))
     throw UsageError(
-        fmt::format("--grid: a spacing of {} m does not lie between .001 and 100000 m", g.spacing));
+        fmt::format("--grid: a spacing of {} m is not between .001 and 100000 m", g.spacing));
   return g;
 }
 

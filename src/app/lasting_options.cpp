@@ -25,7 +25,7 @@ void parse_part(const std::string& text, RenderOptions& options) {
   }
   if (!is_sound || options.parts < 1 || options.parts > most || options.part < 1 ||
       options.part > options.parts)
-    throw UsageError("--part: '" + text + "' is no share K/N with K from 1 to N");
+    throw UsageError("--part: '" + text + "' is not K/N with K from 1 to N");
 }
 
 }  // namespace
@@ -40,12 +40,13 @@ void add_lasting_options(CLI::App& app, LastingOptions& o) {
          "Stop when the estimated error of the picture, relative to its light, is at most this")
       ->check(number_between(1e-6, 10));
   app.add_option("--checkpoint", o.checkpoint,
-                 "File that keeps the work done, every minute and when interrupted");
+                 "File to save the work done, at intervals and when interrupted");
   app.add_option("--checkpoint-interval", o.checkpoint_interval, "Seconds between checkpoints")
       ->check(seconds)
       ->capture_default_str();
   app.add_flag("--resume", o.is_resumed, "Continue from --checkpoint, if the file exists");
-  app.add_option("--part", o.part, "Only share K of N of the picture; troffer merge joins them");
+  app.add_option("--part", o.part,
+                 "Render only part K of N of the picture; troffer merge joins the parts");
 }
 
 void apply_lasting_options(RenderCommand& c, bool has_spp) {
@@ -56,11 +57,12 @@ void apply_lasting_options(RenderCommand& c, bool has_spp) {
   if (!l.part.empty()) {
     parse_part(l.part, c.options);
     if (l.error_limit > 0)
-      throw UsageError("--error-limit is of the whole picture: it does not go with --part");
+      throw UsageError("--error-limit applies to the whole picture and does not go with --part");
     if (c.has_preview) throw UsageError("--preview does not go with --part");
     for (const std::string& o : c.outputs)
       if (image_format(o) != ImageFormat::exr)
-        throw UsageError("--part writes .exr only, which troffer merge joins to any format");
+        throw UsageError(
+            "--part writes .exr only; troffer merge joins the parts and writes any format");
   }
   c.options.error_limit = l.error_limit;
   // Methods without refinement get as many samples as the error limit needs.

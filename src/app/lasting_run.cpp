@@ -24,7 +24,7 @@ std::vector<uint8_t> bytes_of_solution(const std::string& path) {
   const SolutionKind kind = kind_of_solution(path);
   if (kind == SolutionKind::none || kind == SolutionKind::missing) return {};
   if (!fs::is_regular_file(path))
-    throw UsageError("--checkpoint and --part read --solution twice: it must be a plain file");
+    throw UsageError("--checkpoint and --part read --solution twice, so it must be a regular file");
   return read_file_bytes(path);
 }
 
@@ -34,13 +34,13 @@ void reserve_checkpoint(const RenderCommand& c, std::vector<OutputReservation>& 
   const std::string& path = c.lasting.checkpoint;
   if (c.options.parts > 1 && needs_cells(c.options.method, c.options.indirect) &&
       kind_of_solution(c.solution) == SolutionKind::missing)
-    throw UsageError("--part goes on from the cells of --solution, but makes no such file: " +
-                     c.solution + " (troffer radiosity --cells makes one)");
+    throw UsageError("--part reads the cells of --solution but does not create the file: " +
+                     c.solution + " (create it with troffer radiosity --cells)");
   if (path.empty()) return;
   if (output_target(path).kind != OutputTarget::Kind::file)
-    throw UsageError("--checkpoint must be a plain file: " + path);
+    throw UsageError("--checkpoint must be a regular file: " + path);
   if (!c.lasting.is_resumed && fs::exists(path))
-    throw InputError(path, 0, 0, "is there already: --resume goes on from it, or remove it");
+    throw InputError(path, 0, 0, "already exists: continue from it with --resume, or remove it");
   reserved.emplace_back(path);
   remove_abandoned_files(path);  // a killed process may have left temporary files
 }
@@ -60,7 +60,7 @@ void LastingRun::begin(const Scene& scene, const Camera& camera) {
   key_ = picture_key(TROFFER_VERSION, scene, camera, o, bytes_of_solution(command_.solution));
   if (l.checkpoint.empty()) return;
   const auto warn = [](const std::string& what) {
-    fmt::print(stderr, "warning: {}: what is done is not kept\n", printable(what));
+    fmt::print(stderr, "warning: {}: the work done is not saved\n", printable(what));
   };
   checkpoint_ = std::make_unique<Checkpoint>(l.checkpoint, key_, PictureShare{o.part, o.parts},
                                              l.checkpoint_interval, warn);
@@ -69,7 +69,8 @@ void LastingRun::begin(const Scene& scene, const Camera& camera) {
   if (fs::exists(l.checkpoint))
     checkpoint_->read();
   else if (!command_.is_quiet)
-    fmt::print(stderr, "there is no {} yet: the picture is begun\n", printable(l.checkpoint));
+    fmt::print(stderr, "{} does not exist yet: starting the picture from the beginning\n",
+               printable(l.checkpoint));
 }
 
 void LastingRun::agree() const {
@@ -82,7 +83,7 @@ void LastingRun::agree() const {
   std::vector<uint8_t> bytes = own;
   if (!group->tell(bytes, stop())) return;  // stopped
   if (bytes != own)
-    throw EnvironmentError("scene, options, --solution or program are not those of process 0");
+    throw EnvironmentError("scene, options, --solution or program differ from those of process 0");
 }
 
 std::string LastingRun::note(const RenderResult& result, const Camera& camera) const {

@@ -41,11 +41,10 @@ int hand_over_to_mpi(int argc, char** argv) {
   const bool is_first =
       number_in("OMPI_COMM_WORLD_RANK") + number_in("PMI_RANK") + number_in("PMIX_RANK") == 0;
   if (is_first)
-    fmt::print(
-        stderr,
-        "error: mpirun has started this program several times, but it was built without MPI: "
-        "there is no {} (--part shares a picture out without MPI)\n",
-        other.string());
+    fmt::print(stderr,
+               "error: mpirun has started this program several times, but it was built without "
+               "MPI: there is no {} (--part splits a picture without MPI)\n",
+               other.string());
   return exit_usage;
 }
 

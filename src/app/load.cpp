@@ -24,20 +24,20 @@ void add_scene_choice(CLI::App& app, SceneChoice& choice) {
       ->required();
   app.add_option("--variant", choice.options.variant, "glTF: name of the material variant");
   app.add_option("--time", choice.options.time,
-                 "glTF: moment of the animation, in seconds [at rest]")
+                 "glTF: time in the animation, in seconds [rest pose]")
       ->check(number_between(-1e9, 1e9));
   app.add_option("--animation", choice.options.animation,
                  "glTF: name of the animation [the first]");
+  app.add_option("--up", choice.up,
+                 "Upward direction: x, y, z, -y … or X,Y,Z [glTF: y; Radiance: z; others: guessed "
+                 "from cameras, names and objects that stand on others]");
   app.add_option(
-      "--up", choice.up,
-      "Upward direction: x, y, z, -y … or X,Y,Z [glTF: y; Radiance: z; others: by cameras, "
-      "names and objects that stand on others]");
-  app.add_option("--emission-scale", choice.options.emission_scale,
-                 "Factor on the emission of the file's surfaces, such as 683 for Blender's")
+         "--emission-scale", choice.options.emission_scale,
+         "Factor on the emission of surfaces in the file, such as 683 for files from Blender")
       ->check(number_between(0, 1e9))
       ->capture_default_str();
   app.add_flag("--baked", choice.options.shows_baked,
-               "glTF: show the light that troffer bake wrote, in place of computing it");
+               "glTF: show the light that troffer bake wrote instead of computing it");
 }
 
 namespace {
@@ -61,7 +61,7 @@ void tell_warnings(const Scene& scene) {
     fmt::print(stderr, "\n");
   }
   if (entries.size() > most_lines)
-    fmt::print(stderr, "warning: {} more kinds (troffer info lists them)\n",
+    fmt::print(stderr, "warning: {} more kinds of warnings (troffer info lists them)\n",
                entries.size() - most_lines);
 }
 

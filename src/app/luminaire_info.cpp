@@ -74,7 +74,7 @@ std::string luminaire_info(const std::string& path, bool is_json, const std::str
   if (is_json)
     return j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   const std::string lamps = l.lamp_lumens > 0 ? fmt::format("lamps {:.5g} lm", l.lamp_lumens)
-                                              : std::string("no lumens of lamps are stated");
+                                              : std::string("lamp lumens not stated");
   const std::string power =
       l.watts > 0 ? fmt::format("{:.4g} W, {:.4g} lm/W", l.watts, j["efficacy"].get<double>())
                   : std::string("not stated");

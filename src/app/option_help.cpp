@@ -132,9 +132,8 @@ std::string commands_help(const CLI::App& program) {
   for (const CLI::App* c : program.get_subcommands({}))
     out += fmt::format("  {:<11}{}\n", c->get_name(), c->get_description());
   return out +
-         "\ntroffer help COMMAND lists the options of a command, and troffer --version tells "
-         "which\n"
-         "version this is.\n";
+         "\ntroffer help COMMAND lists the options of a command; troffer --version prints the "
+         "version.\n";
 }
 
 std::string command_help(const CLI::App& command) {

@@ -37,7 +37,7 @@ PartNote parse_part_note(const std::string& text, const std::string& file) {
                         n.share.part <= n.share.parts && n.asked[0] >= 0 && n.asked[1] >= 0 &&
                         n.asked[0] < n.asked[2] && n.asked[1] < n.asked[3] &&
                         n.asked[2] <= n.width && n.asked[3] <= n.height;
-  if (!is_sound) throw InputError(file, 0, 0, "what it says of its part is no such thing");
+  if (!is_sound) throw InputError(file, 0, 0, "its description of the part is damaged");
   return n;
 }
 

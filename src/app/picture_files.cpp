@@ -67,8 +67,8 @@ std::string PreviewFiles::file_for(const std::string& output) {
     if (s.output == output) return s.file;
   const std::string file = place_for_unfinished(output);
   if (file != output && !command_.is_quiet)
-    fmt::print(stderr, "{} stays until the picture is done: previews go to {}\n", printable(output),
-               printable(file));
+    fmt::print(stderr, "{} is kept until the picture is finished; previews are written to {}\n",
+               printable(output), printable(file));
   shown_.push_back({output, file});
   return file;
 }

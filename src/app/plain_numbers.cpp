@@ -58,7 +58,7 @@ std::optional<std::string> check_number(NumberKind kind, std::string& text) {
     text = number;
     return std::nullopt;
   }
-  if (is_large) return fmt::format("'{}' has more digits than can be kept", text);
+  if (is_large) return fmt::format("'{}' has too many digits", text);
   if (kind == NumberKind::natural && number.size() > 1 && number[0] == '-' &&
       is_number(NumberKind::integer, number, is_large))
     return fmt::format("'{}' is below 0", text);

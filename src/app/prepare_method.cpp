@@ -21,7 +21,7 @@ void check_method(Method method, Indirect indirect, const std::string& solution)
                                  indirect == Indirect::radiosity ? "kj92" : "certified"));
   if (!solution.empty() && !needs_radiosity(method, indirect) && !needs_cells(method, indirect))
     throw UsageError(method.row().usual_indirect != Indirect::none
-                         ? "--solution does not go with --indirect none: there is nothing to keep"
+                         ? "--solution does not go with --indirect none: there is nothing to store"
                          : "--solution belongs to --method kj92 and certified");
 }
 
@@ -40,8 +40,8 @@ void warn_of_openings(const PreparedScene& scene, const Kj92Settings& settings) 
   const BintreeOptions& tree = settings.sampling.tree;
   if (has_far && tree.allowed_variance > 0 && is_room(scene))
     fmt::print(stderr,
-               "warning: kj92 loses much of a sky's light that comes through openings (two fifths "
-               "through a window); another method has all of it\n");
+               "warning: kj92 misses much of the sky light that enters through openings (two "
+               "fifths through a window); other methods compute all of it\n");
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ constexpr double shortest = 1e-9;  // least length of a direction: squares of pr
 void check_keys(const JsonNode& node, std::initializer_list<std::string_view> known) {
   for (const std::string& key : node.keys())
     if (std::find(known.begin(), known.end(), key) == known.end())
-      node.member(key).fail("is not known here");
+      node.member(key).fail("is not a known key");
 }
 
 std::string text_of(const JsonNode& node, const char* key) {

@@ -79,7 +79,7 @@ void add_what(CLI::App& s, ReportCommand& c) {
        "--surfaces", c.surface_files,
        "JSON file of surfaces, observers and profiles, or .csv of surfaces; may be repeated")
       ->allow_extra_args(false);
-  s.add_option("--profile", c.profile, "Task of desks and work planes, such as office-writing")
+  s.add_option("--profile", c.profile, "Task on desks and work planes, such as office-writing")
       ->capture_default_str();
   s.add_option("--maintenance", c.maintenance, "Maintenance factor of electric light")
       ->check(number_between(0.01, 1))
@@ -88,15 +88,16 @@ void add_what(CLI::App& s, ReportCommand& c) {
                "Height of work planes over floors without desks, in metres")
       ->check(number_between(0, 10))
       ->capture_default_str();
-  s.add_option("--power", c.power,
-               "Watts of a luminaire; NODE* stands for all whose names begin so; may be repeated")
+  s.add_option(
+       "--power", c.power,
+       "Watts of a luminaire; NODE* matches all names that begin with NODE; may be repeated")
       ->allow_extra_args(false);
   s.add_option(
        "--observer", c.observers,
        "Eye position and viewing direction for glare; may be repeated [chosen automatically]")
       ->allow_extra_args(false);
   s.add_option("--daylight-factor", c.daylight_factor,
-               "Daylight factors; auto: where openings show the sky")
+               "Daylight factors; auto: if openings show the sky")
       ->check(one_of({"auto", "on", "off"}))
       ->capture_default_str();
   add_switch(s, "--contributions", c.contributions, "Each luminaire's share of the illuminance");
@@ -104,8 +105,8 @@ void add_what(CLI::App& s, ReportCommand& c) {
 }
 
 void add_how(CLI::App& s, ReportCommand& c) {
-  add_switch(s, "--pictures", c.pictures, "Pictures of luminances");
-  s.add_option("--camera", c.cameras, "Camera of a picture; may be repeated [the first]")
+  add_switch(s, "--pictures", c.pictures, "Luminance pictures");
+  s.add_option("--camera", c.cameras, "Name of a picture's camera; may be repeated [the first]")
       ->allow_extra_args(false);
   s.add_option("--width", c.width, "Width of pictures in pixels")
       ->check(whole_number_between(16, 4096))
@@ -132,7 +133,7 @@ void add_report(CLI::App& app, ReportCommand& c) {
   add_scene_choice(*s, c.scene);
   s->add_option("-o,--output", c.output, "Folder for report.html, report.json, points.csv")
       ->required();
-  s->add_option("--title", c.title, "Title [the scene's file]");
+  s->add_option("--title", c.title, "Title [name of the scene's file]");
   s->add_option("--dated", c.date, "Date shown in the report, as text");
   s->add_option("--compare", c.compare,
                 "report.json of another report: adds a comparison of both variants");

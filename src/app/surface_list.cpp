@@ -50,13 +50,14 @@ SurfaceRequest surface_of(const CsvReader& table, const CsvRow& row,
   r.profile = f.texts[2];
   r.lift = v[3];
   r.border = v[4];
-  if (std::abs(r.lift) > most_lift) table.fail(row, where[3], "lift lies between -1000 and 1000");
+  if (std::abs(r.lift) > most_lift)
+    table.fail(row, where[3], "lift must lie between -1000 and 1000");
   if (f.has[4] && !(r.border >= 0 && r.border <= most_lift))
-    table.fail(row, where[4], "border lies between 0 and 1000");
+    table.fail(row, where[4], "border must lie between 0 and 1000");
   size_t given = 0;
   for (size_t i = first_of_rectangle; i < surface_columns.size(); ++i) given += f.has[i] ? 1 : 0;
   if (!r.node.empty()) {
-    if (given > 0) table.fail(row, where[0], "a surface has a node or a rectangle, not both");
+    if (given > 0) table.fail(row, where[0], "a surface needs a node or a rectangle, not both");
     return r;
   }
   for (size_t i = first_of_rectangle; i < surface_columns.size(); ++i)

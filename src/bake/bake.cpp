@@ -243,7 +243,7 @@ void Baking::add_texels(const BakedSurfaces& surfaces, const TexelSites& sites,
   }
   if (atlas.coarser > 0)
     result_.warnings.push_back(
-        {"a surface that fits no page gets fewer texels than asked for", atlas.coarser});
+        {"a surface that fits on no page gets fewer texels than requested", atlas.coarser});
 }
 
 void Baking::add_vertices(const BakedSurfaces& surfaces, const VertexSites& sites,

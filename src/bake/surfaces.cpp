@@ -244,7 +244,7 @@ BakedSurfaces surfaces_of(Scene scene, int threads) {
     if (made[i].has_unfit_set)
       out.warnings.add(
           "a second set of texture coordinates cannot hold a lightmap (outside of [0,1], or "
-          "overlapping): one is made");
+          "overlapping); a new one is made");
     if (!made[i].charted.charts.empty()) mesh_of(i) = made[i].charted.mesh;
     out.charted.push_back(std::move(made[i].charted));
   }

@@ -27,7 +27,7 @@ uint64_t hash_of_parts(std::span<const uint8_t> header, std::span<const uint8_t>
 void check_kind(const OwnFile& kind, std::span<const uint8_t> bytes, size_t header_size,
                 const std::string& file) {
   const std::string name = kind.name;
-  if (bytes.empty()) throw InputError(file, 0, 0, "is empty: no " + name);
+  if (bytes.empty()) throw InputError(file, 0, 0, "is empty, not a " + name);
   if (!kind.is_of(bytes)) throw InputError(file, 0, 0, "not a " + name);
   if (bytes.size() < header_size) throw InputError(file, 0, 0, name + " is cut short");
   uint32_t version = 0;
@@ -45,7 +45,8 @@ void BodySize::take(uint64_t count, uint64_t size) {
 }
 
 void BodySize::check_end() const {
-  if (left_ != 0) throw InputError(file_, 0, 0, std::string(kind_.name) + " has bytes too many");
+  if (left_ != 0)
+    throw InputError(file_, 0, 0, std::string(kind_.name) + " has extra bytes at its end");
 }
 
 }  // namespace troffer

@@ -106,7 +106,7 @@ double parse_time(const std::string& text, const std::string& option) {
   t.expect_time();
   const TimeOfDay time = t.time_of_day(true);
   const double zone = t.zone_hours();
-  if (!t.is_at_end()) t.fail("'" + std::string(t.rest()) + "' follows the time zone");
+  if (!t.is_at_end()) t.fail("'" + std::string(t.rest()) + "' must not follow the time zone");
   return julian_day(year, month, day, time.hour + time.minute / 60.0 + time.second / 3600 - zone);
 }
 

@@ -57,7 +57,7 @@ void TimeText::expect_time() {
   bool is_blank = false;
   while (take(' ')) is_blank = true;
   if (!is_marked && !is_blank)
-    fail("'T' or a blank expected before the time of day, not '" +
+    fail("'T' or a space expected before the time of day, not '" +
          std::string(rest_.substr(0, 10)) + "'");
 }
 
@@ -82,7 +82,7 @@ TimeOfDay TimeText::time_of_day(bool has_seconds) {
 double TimeText::zone_hours() {
   while (take(' ')) {
   }
-  if (rest_.empty()) fail("the time zone is missing: Z, or hours ahead of it, +02:00");
+  if (rest_.empty()) fail("the time zone is missing: Z, or the hours ahead of it, such as +02:00");
   if (take('Z') || take('z')) return 0;
   constexpr std::string_view minus = "\xe2\x88\x92";  // U+2212
   bool is_west = false;
@@ -92,8 +92,7 @@ double TimeText::zone_hours() {
   } else if (take('-')) {
     is_west = true;
   } else if (!take('+')) {
-    fail("the time zone is Z, or such as +02:00, and not '" + std::string(rest_.substr(0, 10)) +
-         "'");
+    fail("the time zone must be Z or like +02:00, not '" + std::string(rest_.substr(0, 10)) + "'");
   }
   const int hours = number("the time zone's hour", 2, 0, 14);
   const bool has_colon = take(':');

@@ -9,7 +9,7 @@ namespace troffer {
 
 namespace {
 
-constexpr OwnFile cell_file{{'t', 'r', 'o', 'f', 'f', 'C', 'e', 'l'}, 6, "file of cells"};
+constexpr OwnFile cell_file{{'t', 'r', 'o', 'f', 'f', 'C', 'e', 'l'}, 6, "cell file"};
 constexpr uint32_t most_rays = 1 << 16;  // of one part of a row
 constexpr uint32_t divided_flag = 1, halved_flag = 2;
 
@@ -163,9 +163,9 @@ Header header_of(std::span<const uint8_t> bytes, const std::string& file, uint64
   const auto h = checked_header<Header>(cell_file, bytes, file, count);
   if (!(h.size >= least_cell) || !std::isfinite(h.size) || !(h.direct_error >= 0) ||
       h.cells >= no_cell)
-    refuse("file of cells has values that none can have");
+    refuse("cell file has invalid values");
   if (h.scene_key != scene_key)
-    refuse("file of cells belongs to another scene, or other light: make it anew");
+    refuse("cell file belongs to another scene, or other light: compute it again");
   return h;
 }
 
@@ -219,7 +219,7 @@ CellStore load_cells(std::span<const uint8_t> bytes, const std::string& file, ui
   CellStore store;
   auto map = std::make_shared<CellMap>(tracer, h.size);
   if (!read_cells(in, h, *map, store) || !read_rows(in, h, *map, store.rows))
-    throw InputError(file, 0, 0, "file of cells has values that none can have");
+    throw InputError(file, 0, 0, "cell file has invalid values");
   store.map = std::move(map);
   store.direct_error = h.direct_error;
   return store;

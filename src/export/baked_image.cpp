@@ -52,9 +52,9 @@ void tell_what_is_left_out(const Scene& scene, const Material& m, bool is_gltf,
                            WarningLog& warnings) {
   if (m.bump.texture >= 0 && (is_gltf || !has_image(scene, m.bump.texture)))
     warnings.add("bumps are not written");
-  if (m.back_faces == BackFaces::black) warnings.add("black backs are written as their fronts");
+  if (m.back_faces == BackFaces::black) warnings.add("black back sides are written like the front");
   if (m.back_faces == BackFaces::unseen && !is_gltf)
-    warnings.add("backs that the eye does not see are written as their fronts");
+    warnings.add("back sides that are invisible to the camera are written like the front");
   if (!is_gltf && !m.sheen_color.value.is_black()) warnings.add("sheen is not written");
   if (!is_gltf && m.kind == MaterialKind::coated_diffuse && m.coat.value > 0)
     warnings.add("second coats over diffuse bases are not written");
@@ -62,7 +62,7 @@ void tell_what_is_left_out(const Scene& scene, const Material& m, bool is_gltf,
   if (!is_gltf && m.coat_normal_texture >= 0)
     warnings.add("normal maps of clear coats are not written");
   if (!is_gltf && m.anisotropy.value > 0)
-    warnings.add("gloss with a grain is written as wide as across it");
+    warnings.add("anisotropic gloss is written as isotropic, with the width across the grain");
   for_each_input(m, [&](const auto& input) {
     if (input.texture < 0) return;
     const Texture& t = scene.textures[size_t(input.texture)];

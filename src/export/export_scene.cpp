@@ -84,9 +84,10 @@ std::vector<Warning> write_scene(Scene scene, const std::string& path, const Bak
   for (const Warning& w : changed.entries()) lost.push_back(w);
   if (pictures > 0)
     lost.push_back(
-        {"lights that throw an image are written as even ones of the same flux", pictures});
+        {"lights that project an image are written as uniform lights of the same flux", pictures});
   if (measured > 0)
-    lost.push_back({"measured luminaires are written as even sources of the same flux", measured});
+    lost.push_back(
+        {"measured luminaires are written as uniform sources of the same flux", measured});
   return lost;
 }
 

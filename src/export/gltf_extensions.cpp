@@ -59,7 +59,7 @@ void GltfMaterialWriter::add_glass(const Material& m, Json& out) {
              transmission);
   out["extensions"]["KHR_materials_transmission"] = transmission;
   if (m.is_thin) {
-    if (!m.absorption.is_black()) warnings_.add("what sheets of glass absorb is not written");
+    if (!m.absorption.is_black()) warnings_.add("absorption in sheets of glass is not written");
     return;
   }
   Json& volume = out["extensions"]["KHR_materials_volume"];
@@ -76,7 +76,9 @@ void GltfMaterialWriter::add_specular(const Material& m, Json& out) {
   const bool is_mixed = m.kind == MaterialKind::metallic_roughness;
   const bool is_colored = m.specular_color.texture >= 0 || m.specular_color.value != Rgb{1};
   if (!is_mixed && is_colored)
-    warnings_.add("factors on what coats and glass reflect are written as glTF's, which differ");
+    warnings_.add(
+        "factors on the reflection of coats and glass are written as glTF's, which work "
+        "differently");
   if (m.specular.value == 1 && m.specular.texture < 0 && !is_colored) return;
   Json specular = Json::object();
   add_number(m.specular, 1, "specular", true, specular);
@@ -104,7 +106,7 @@ void GltfMaterialWriter::add_cloth_and_grain(const Material& m, Json& out) {
 void GltfMaterialWriter::add_clear_coat(const Material& m, Json& out) {
   if (m.coat.value <= 0 || m.kind == MaterialKind::diffuse) return;
   if (m.kind == MaterialKind::coated_diffuse || std::abs(m.coat_ior - 1.5f) > 0.01f)
-    warnings_.add("clear coats are written as glTF's, of index 1.5");
+    warnings_.add("clear coats are written with glTF's index of refraction, 1.5");
   // glTF's roughness is the square root of the GGX width.
   const float power = m.roughness_meaning == RoughnessMeaning::alpha           ? 0.5f
                       : m.roughness_meaning == RoughnessMeaning::alpha_is_sqrt ? 0.25f
@@ -148,7 +150,7 @@ void GltfMaterialWriter::add_diffuse_transmission(const Material& m, Json& out) 
     return;
   }
   if (m.diffuse_transmission.texture >= 0)
-    warnings_.add("textures of how much light comes through are written as one value");
+    warnings_.add("transmission textures are written as one value");
   const float share =
       std::clamp(evaluate(scene_.textures, m.diffuse_transmission, Vec2{0, 0}), 0.0f, 1.0f);
   const float back = max_component(clamp01(m.base_color.value));

@@ -41,10 +41,10 @@ std::optional<Texture> GltfMaterialWriter::look_of_all(std::span<const int32_t> 
   const auto common = common_look(scene_, textures, mesh_uvs_, material_);
   if (!common) return std::nullopt;
   if (common->is_resampled)
-    warnings_.add("images that lie differently and that glTF wants in one are resampled");
+    warnings_.add("images with different placements that glTF stores in one image are resampled");
   Texture look = common->look;
   if (look.wrap_u != WrapMode::black && look.wrap_v != WrapMode::black) return look;
-  warnings_.add("images that are black beyond their edges are written with their edges drawn out");
+  warnings_.add("images that are black beyond their edges are written with clamped edges");
   return look;
 }
 
@@ -125,7 +125,7 @@ void GltfMaterialWriter::add_base(const Material& m, Json& out) {
       has_alpha_image ? fmt::format("alpha {} {}", m.alpha.texture, m.alpha.channel) : "");
   pbr["baseColorTexture"] = texture(key, *look, [&](const Texture& t) {
     BakedImage image = baked_color(scene_, base, t, has_alpha_image ? &m.alpha : nullptr, change);
-    if (image.scale > 1) warnings_.add("colours of surfaces above 1 are written as 1");
+    if (image.scale > 1) warnings_.add("surface colours above 1 are written as 1");
     image.scale = 1;
     return image;
   });
@@ -180,13 +180,13 @@ Json GltfMaterialWriter::surface(const Material& m) {
   add_film(m, out);
   if (m.kind == MaterialKind::conductor) {
     if (m.coat.value > 0)
-      warnings_.add("metals under a coat are written as glTF's, into which light does not bend");
+      warnings_.add("metals under a coat are written as glTF's, without refraction in the coat");
     if (!m.is_reflectance)
       warnings_.add("metals are written by their reflectance at normal incidence");
     return out;
   }
   if (m.kind == MaterialKind::coated_diffuse)
-    warnings_.add("coats over diffuse bases are written as glTF's, which differ a little");
+    warnings_.add("coats over diffuse bases are written as glTF's, which differ slightly");
   out["extensions"]["KHR_materials_ior"] = {{"ior", m.ior >= 1 || m.ior == 0 ? m.ior : 1.5f}};
   if (m.kind == MaterialKind::metallic_roughness) add_diffuse_transmission(m, out);
   add_specular(m, out);

@@ -196,7 +196,7 @@ void GltfWriter::add_light(const Light& e) {
     warnings_.add("the focal distance of spotlights is left out: glTF has none");
   if (!e.portal.empty()) warnings_.add("portals of suns are left out: glTF has none");
   if (e.texture >= 0)
-    warnings_.add("pictures that points and spots throw are left out: they shine evenly");
+    warnings_.add("pictures that points and spots project are left out: they shine uniformly");
   Rgb radiance = e.radiance;
   if (e.kind == LightKind::sun) {
     radiance *= float(pi * sqr(std::sin(double(e.angular_radius))));
@@ -206,8 +206,8 @@ void GltfWriter::add_light(const Light& e) {
     light["spot"] = {{"innerConeAngle", std::acos(std::min(1.0, double(e.cos_inner)))},
                      {"outerConeAngle", std::min(pi / 2, std::acos(double(e.cos_outer)))}};
     if (e.falloff != SpotFalloff::square)
-      warnings_.add("glTF's spots fade by the square between their angles");
-    if (e.cos_outer < 0) warnings_.add("glTF's spots are at most 90 degrees wide to each side");
+      warnings_.add("glTF spots fade quadratically between their angles");
+    if (e.cos_outer < 0) warnings_.add("glTF spots are at most 90 degrees wide to each side");
   }
   const float largest = std::max(max_component(radiance), 1e-30f);
   const Rgb color = radiance / largest;
@@ -227,10 +227,10 @@ void GltfWriter::add_camera(const Camera& c) {
   if (c.has_screen_window) {
     const auto& w = c.screen_window;
     if (std::abs(w[0] + w[1]) > 1e-4f * w[1] || std::abs(w[2] + w[3]) > 1e-4f * w[3])
-      warnings_.add("glTF's cameras look straight ahead: a screen window is centred");
+      warnings_.add("glTF cameras have no screen window: it is centred");
     half = double(c.half_extent) * double(w[3] - w[2]) / 2;
   }
-  if (c.lens_radius > 0) warnings_.add("glTF's cameras have no lens: all is sharp");
+  if (c.lens_radius > 0) warnings_.add("glTF cameras have no lens: everything is in focus");
   Json camera;
   if (c.kind == CameraKind::perspective) {
     camera["type"] = "perspective";
@@ -329,7 +329,7 @@ void GltfWriter::write_text(OutputFolder& files, Json json) {
 
 std::vector<Warning> GltfWriter::write(const std::string& path, OutputFolder& files) {
   if (!scene_.spheres.empty() || !scene_.disks.empty())
-    warnings_.add("spheres and disks are written as triangles, sources with their power");
+    warnings_.add("spheres and disks are written as triangles; sources keep their power");
   const SceneParts parts = parts_of(scene_, true);
   for (const ScenePart& part : parts.parts)
     add_part(part, part.light >= 0 ? parts.radiances[size_t(part.light)] : Rgb{});

@@ -51,9 +51,9 @@ std::string Writer::spot(const Light& e) {
   const double outer = deg_from_rad(std::acos(double(e.cos_outer)));
   const double inner = deg_from_rad(std::acos(std::min(1.0, double(e.cos_inner))));
   if (e.falloff == SpotFalloff::square)
-    warnings_.add("pbrt's spots fade smoothly between their angles, not by the square");
+    warnings_.add("pbrt spots fade smoothly between their angles, not quadratically");
   if (e.falloff == SpotFalloff::linear)
-    warnings_.add("pbrt's spots fade smoothly between their angles, not linearly");
+    warnings_.add("pbrt spots fade smoothly between their angles, not linearly");
   const Vec3d from = Vec3d(e.position) + scene_.origin;
   return "\"spot\"" + rgb("I", e) + point("from", from) + point("to", from + Vec3d(e.direction)) +
          fmt::format(" \"float coneangle\" {} \"float conedeltaangle\" {}", outer, outer - inner);
@@ -63,7 +63,7 @@ std::string Writer::image(const Light& e, const Image& picture) {
   const std::string file =
       files_.write(fmt::format("surroundings{}.pfm", images_++), encode_pfm(picture));
   const Rgb c = e.radiance;
-  if (c.r != c.g || c.g != c.b) warnings_.add("tints of images of the surroundings are averaged");
+  if (c.r != c.g || c.g != c.b) warnings_.add("tints of environment images are averaged");
   return fmt::format("\"infinite\" \"string filename\" \"{}\" \"float scale\" {}", file,
                      double(average(c)) * unit_);
 }
@@ -75,8 +75,8 @@ std::string Writer::environment(const Light& e) {
   picture.pixels = map.texels;
   if (map.projection == SphereMap::lat_long)
     warnings_.add(
-        "an image of the surroundings is written by azimuth and height: troffer reads it, "
-        "pbrt-v4 wants a square equal-area one");
+        "an environment image is written in latitude-longitude layout: troffer reads it, pbrt-v4 "
+        "needs a square equal-area image");
   return image(e, picture);
 }
 
@@ -105,7 +105,7 @@ std::string Writer::goniometric(const Light& e) {
 std::string Writer::projection(const Light& e) {
   const Texture& t = scene_.textures[size_t(e.texture)];
   if (e.has_uniform_plane)
-    warnings_.add("pbrt's projected pictures are darker towards their rims than Mitsuba's");
+    warnings_.add("pbrt's projected pictures are darker towards their edges than Mitsuba's");
   const std::string file =
       files_.write(fmt::format("slide{}.png", images_++),
                    png_of(baked_color(scene_, {Rgb{1}, e.texture}, look_of(t), nullptr)));
@@ -113,7 +113,7 @@ std::string Writer::projection(const Light& e) {
   const double half_x = 1 / (double(length(e.axes[0])) * std::max(aspect, 1.0)),
                half_y = 1 / (double(length(e.axes[1])) * std::max(1 / aspect, 1.0));
   if (std::abs(half_x - half_y) > 0.01 * half_x)
-    warnings_.add("a projector's picture keeps its own proportions in pbrt: it is thrown as wide");
+    warnings_.add("a projected picture keeps its own proportions in pbrt: only its width is kept");
   return placed({normalize(e.axes[0]), -normalize(e.axes[1]), normalize(e.axes[2])}, e,
                 "\"projection\"" + rgb("I", e) +
                     fmt::format(" \"float fov\" {} \"string filename\" \"{}\"",
@@ -128,7 +128,7 @@ std::string Writer::point_light(const Light& e) {
   if (e.texture >= 0 && scene_.textures[size_t(e.texture)].kind == TextureKind::image)
     return projection(e);
   if (e.environment >= 0 || e.texture >= 0)
-    warnings_.add("an image by which a light shines is left out");
+    warnings_.add("the image that shapes a light is left out");
   return "\"point\"" + rgb("I", e) + point("from", Vec3d(e.position) + scene_.origin);
 }
 
@@ -153,7 +153,7 @@ std::string Writer::sky(const Light& e) {
 std::string Writer::text(const Light& e) {
   std::string out;
   if (e.kind == LightKind::spot && e.texture >= 0)
-    warnings_.add("pictures that spots throw are left out: they shine evenly");
+    warnings_.add("pictures that spots project are left out: they shine uniformly");
   switch (e.kind) {
     case LightKind::point:
       out = point_light(e);

@@ -109,7 +109,9 @@ std::string PbrtMaterialWriter::metal_text(const Material& m, const std::string&
   if (m.is_reflectance) return color("reflectance", m.base_color);
   if (m.specular_color.texture < 0 && m.specular_color.value == Rgb{1})
     return rgb((prefix + "eta").c_str(), m.eta) + rgb((prefix + "k").c_str(), m.k);
-  warnings_.add("metals of an index and a factor are written by their reflectance straight on");
+  warnings_.add(
+      "metals with an index of refraction and a factor are written by their reflectance at normal "
+      "incidence");
   const Rgb below = m.eta - Rgb{1}, above = m.eta + Rgb{1}, k2 = m.k * m.k;
   ColorInput factor = m.specular_color;
   factor.value *= (below * below + k2) / (above * above + k2);
@@ -124,7 +126,7 @@ std::string PbrtMaterialWriter::coated_metal_text(const Material& m) {
   FloatInput base = m.roughness;
   ColorChange change;
   if (!bends) {
-    warnings_.add("clear coats over glTF's metal are written as pbrt's, into which light bends");
+    warnings_.add("clear coats over glTF's metal are written as pbrt's, which refract light");
     base.value *= std::pow(m.coat_ior, -1 / power);
     change = [&m](float v) { return reflectance_in_air(v, m.coat_ior); };
   }
@@ -140,7 +142,7 @@ std::string PbrtMaterialWriter::translucent_text(const Material& m, const ColorI
   ColorInput through = m.diffuse_transmission_color;
   through.value *= m.diffuse_transmission.value;
   if (m.diffuse_transmission.texture >= 0)
-    warnings_.add("textures of how much light comes through are written as one value");
+    warnings_.add("transmission textures are written as one value");
   return "\"diffusetransmission\"" + color("reflectance", base) + color("transmittance", through);
 }
 
@@ -150,10 +152,11 @@ std::string PbrtMaterialWriter::mixed_text(const Material& m) {
   const float transmission = evaluate(scene_.textures, m.transmission, Vec2{0.5f, 0.5f});
   const float power = power_for_pbrt(m.roughness_meaning);
   const bool is_mixed = (metallic > 0 && metallic < 1) || (transmission > 0 && transmission < 1);
-  warnings_.add(is_mixed ? "mixtures of metal, coat and glass are written as the one that has most "
-                           "weight: pbrt has none"
-                         : "metal, coat and glass of glTF's model are written as pbrt's, which "
-                           "differ a little");
+  warnings_.add(
+      is_mixed
+          ? "mixtures of metal, coat and glass are written as the part with the largest weight: "
+            "pbrt has no such mixtures"
+          : "metal, coat and glass of glTF's model are written as pbrt's, which differ slightly");
   if (metallic >= 0.5f && m.coat.value >= 0.5f) return coated_metal_text(m);
   if (m.coat.value > 0) warnings_.add(coats_left_out);
   if (metallic >= 0.5f)
@@ -163,7 +166,7 @@ std::string PbrtMaterialWriter::mixed_text(const Material& m) {
                      : fmt::format("\"dielectric\" \"float eta\" {}", m.ior) + roughness(m, power);
   if (m.diffuse_transmission.value > 0) {
     if (m.specular.value > 0)
-      warnings_.add("the gloss of what light passes evenly is not written: pbrt has none");
+      warnings_.add("gloss on diffusely transmitting surfaces is not written: pbrt has none");
     ColorInput base = m.base_color;
     base.value *= 1 - m.diffuse_transmission.value;
     return translucent_text(m, base);
@@ -182,7 +185,7 @@ std::string PbrtMaterialWriter::mixed_text(const Material& m) {
 std::string PbrtMaterialWriter::material_text(const Material& m) {
   const bool has_factor = m.specular_color.texture >= 0 || m.specular_color.value != Rgb{1};
   if (has_factor && (m.kind == MaterialKind::coated_diffuse || m.kind == MaterialKind::dielectric))
-    warnings_.add("factors on what coats and glass reflect are not written");
+    warnings_.add("factors on the reflection of coats and glass are not written");
   const float power = power_for_pbrt(m.roughness_meaning);
   switch (m.kind) {
     case MaterialKind::diffuse:
@@ -210,7 +213,7 @@ std::string PbrtMaterialWriter::material_text(const Material& m) {
 std::string PbrtMaterialWriter::medium_text(const Material& m) {
   if (m.absorption.is_black()) return "";
   if (m.is_thin) {
-    warnings_.add("what sheets of glass absorb is not written: pbrt has none");
+    warnings_.add("absorption in sheets of glass is not written: pbrt has none");
     return "";
   }
   const std::string name = fmt::format("medium{}", media_++);

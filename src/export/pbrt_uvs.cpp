@@ -75,9 +75,10 @@ void PbrtUvs::choose_set(const std::vector<int32_t>& textures) {
   is_second_ = is_by_second(textures.front());
   for (const int32_t t : textures)
     if (is_by_second(t) != is_second_)
-      warnings_.add(is_second_
-                        ? "textures by the first set of coordinates are written by the second set"
-                        : "textures by a second set of coordinates are written by the first");
+      warnings_.add(
+          is_second_
+              ? "textures on the first set of texture coordinates are written for the second set"
+              : "textures on a second set of texture coordinates are written for the first set");
 }
 
 void PbrtUvs::lead(const Texture& look) {
@@ -144,7 +145,7 @@ void PbrtUvs::place_fixed(const std::vector<int32_t>& others) {
   over_whole(emission_);
   if (!is_exact)
     warnings_.add(
-        "images of normals and of emission are resampled: pbrt cannot turn or place them apart");
+        "normal maps and emission images are resampled: pbrt cannot place them separately");
   lead(*whole);
 }
 
@@ -195,7 +196,7 @@ std::optional<PbrtUvs::Placing> PbrtUvs::placing(std::span<const int32_t> textur
   if (!common) return std::nullopt;
   Texture look = common->look;
   if (common->is_resampled)
-    warnings_.add("products of images that lie differently are written as one, resampled");
+    warnings_.add("products of images with different placements are resampled into one image");
   const UvBox box = uvs_.of(material_, is_second_);
   const bool is_said = look.wrap_u == look.wrap_v && look.wrap_u != WrapMode::mirror;
   if (!is_said && !is_clamped_within(look, places_over(look, box))) {
@@ -214,7 +215,7 @@ std::optional<PbrtUvs::Placing> PbrtUvs::placing(std::span<const int32_t> textur
     return std::abs(map.along_u.y) + std::abs(map.along_v.x) <= rounding * size;
   };
   if (!is_straight()) {
-    warnings_.add("images turned differently are resampled: pbrt cannot turn textures");
+    warnings_.add("rotated images are resampled: pbrt cannot rotate textures");
     look = look_over(look, box);
     map = relative(look);
   }

@@ -180,8 +180,8 @@ void flatten_second_sets(Scene& scene, bool keeps_vertex_colors, WarningLog& war
     mesh.material = uint32_t(scene.materials.size());
     scene.materials.push_back(std::move(m));
     warnings.add(
-        "colours of vertices, or another image by a second set of coordinates, on an image are "
-        "written as their mean over each mesh");
+        "vertex colours, or an image on a second set of texture coordinates, that multiply another "
+        "image are written as their mean over each mesh");
   };
   for (Mesh& m : scene.meshes) flatten(m);
   for (Mesh& m : scene.instanced_meshes) flatten(m);

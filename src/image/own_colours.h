@@ -26,8 +26,7 @@ enum class ColoursFound {
   broken,  // invalid profile or gamma, or other channels: ignored
 };
 // Warning text after a file's name.
-constexpr const char* broken_colours =
-    ": what it says of its colours cannot be used; taken for sRGB";
+constexpr const char* broken_colours = ": its colour profile cannot be used; read as sRGB";
 
 // Converts the picture to sRGB, or keeps linear values and clears is_srgb. Alpha is unchanged.
 // 8-bit pictures stay 8-bit, clipped to sRGB. ICC profiles use relative colorimetry [1].

@@ -113,7 +113,7 @@ class Reader {
       return rgba_of(at, h_.plain_kind() == kind_grey ? 8 : h_.depth);
     const size_t index = bytes_ == 1 ? at[0] : word_at({at, 2}, 0);
     if (index < h_.map_first || index - h_.map_first >= map_.size())
-      encoded_.fail("broken TGA: a texel names a colour that the map does not have");
+      encoded_.fail("broken TGA: a texel's index lies outside the colour map");
     return map_[index - h_.map_first];
   }
 

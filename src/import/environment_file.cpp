@@ -87,17 +87,16 @@ EnvironmentMap read_environment(const std::string& path, WarningLog& warnings) {
   map.texels = texels_of(raster, count);
   if (count.bad > 0)
     warnings.add(
-        fmt::format("{}: {} values are negative, no numbers or beyond 1e30", path, count.bad));
+        fmt::format("{}: {} values are negative, not numbers or above 1e30", path, count.bad));
   if (count.infinite > 0)
-    warnings.add(
-        fmt::format("{}: {} values are infinite; the image's largest, or 65504, stands "
-                    "for them",
-                    path, count.infinite));
-  if (map.projection == SphereMap::lat_long && map.width != 2 * map.height)
     warnings.add(fmt::format(
-        "{}: {} x {} is neither square (equal-area) nor twice as wide as high (azimuth and "
-        "height); read as the latter",
-        path, map.width, map.height));
+        "{}: {} values are infinite; the image's largest value, or 65504, replaces them", path,
+        count.infinite));
+  if (map.projection == SphereMap::lat_long && map.width != 2 * map.height)
+    warnings.add(
+        fmt::format("{}: {} x {} is neither square (equal-area) nor twice as wide as high "
+                    "(latitude-longitude); read as the latter",
+                    path, map.width, map.height));
   if (map.texels.size() <= max_environment_texels) return map;
   int by = 2;
   while (map.texels.size() / (size_t(by) * size_t(by)) > max_environment_texels) ++by;

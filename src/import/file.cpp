@@ -138,7 +138,7 @@ Bytes unpacked(const std::string& path, Bytes packed, uint64_t max_bytes) {
     status = inflate(&stream, Z_NO_FLUSH);
     const size_t made = block.size() - stream.avail_out;
     if (made > max_bytes - out.size())
-      fail("becomes more than " + std::to_string(max_bytes) + " bytes");
+      fail("decompresses to more than " + std::to_string(max_bytes) + " bytes");
     out.insert(out.end(), block.begin(), block.begin() + std::ptrdiff_t(made));
     if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR)
       fail("the compressed data is broken");

@@ -21,17 +21,17 @@ namespace {
 Scene import_file(const std::string& path, const ImportOptions& options) {
   const std::string ending = lower_case_ending(without_gz(path));
   if (ending == "oct")
-    throw InputError(path, 0, 0,
-                     "is a Radiance octree, which is not read: give the .rad file that it was made "
-                     "from");
+    throw InputError(
+        path, 0, 0,
+        "is a Radiance octree, which is not supported: give the .rad file that it was made from");
   const bool is_gltf = ending == "gltf" || ending == "glb";
   if (!is_gltf && ending != "pbrt" && ending != "obj" && ending != "xml" && ending != "rad" &&
       ending != "stl" && ending != "ply")
-    throw InputError(
-        path, 0, 0,
-        "is no scene: its name should end in .gltf, .glb, .pbrt, .obj, .ply, .stl, .xml or .rad");
+    throw InputError(path, 0, 0,
+                     "is not a scene: its name should end in .gltf, .glb, .pbrt, .obj, .ply, .stl, "
+                     ".xml or .rad");
   if (!is_gltf && options.is_any())
-    throw UsageError("--variant, --time, --animation and --baked go with .gltf and .glb");
+    throw UsageError("--variant, --time, --animation and --baked need a .gltf or .glb");
   if (size_of_file(path) == 0) throw InputError(path, 0, 0, "is empty");
   if (ending == "rad") return import_radiance(path);
   if (ending == "xml") return import_mitsuba(path, options.images);

@@ -32,7 +32,7 @@ void check_limits(std::string_view text, const JsonLimits& limits, const std::st
       case '{':
         if (++depth > limits.depth)
           refuse(at, "with more than " + std::to_string(limits.depth) +
-                         " arrays and objects within each other");
+                         " levels of arrays and objects");
         ++values;
         break;
       case ',':

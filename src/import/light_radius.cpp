@@ -53,10 +53,10 @@ void give_radius(Scene& scene, double radius) {
     Light& e = scene.lights[i];
     if (e.kind != LightKind::point && e.kind != LightKind::spot) continue;
     if (e.environment != no_environment || e.texture != no_texture) {
-      scene.warnings.add("--light-radius: lights that throw images stay points");
+      scene.warnings.add("--light-radius: lights that project images stay points");
       continue;
     }
-    if (e.range != 0) scene.warnings.add("--light-radius: the range of lights is left aside");
+    if (e.range != 0) scene.warnings.add("--light-radius: the range of lights is ignored");
     e.range = 0;
     if (e.kind == LightKind::spot) {
       e.web = int32_t(scene.webs.size());

@@ -46,8 +46,8 @@ class TensorFile {
   explicit TensorFile(std::vector<uint8_t> bytes) : bytes_(std::move(bytes)) {
     constexpr std::string_view magic("tensor_file\0", 12);
     if (bytes_.size() < 18 || std::memcmp(bytes_.data(), magic.data(), magic.size()) != 0)
-      throw Problem{"is no tensor file"};
-    if (bytes_[12] != 1) throw Problem{"is of another version than 1"};
+      throw Problem{"is not a tensor file"};
+    if (bytes_[12] != 1) throw Problem{"is not of version 1"};
     at_ = 14;
     const auto fields = take<uint32_t>();
     if (fields > max_fields) throw Problem{"has too many fields"};
@@ -235,9 +235,9 @@ Material measured_material(const std::string& folder, const std::string& name,
                              "its mean colour",
                              100 * peak.share, peak.width));
   } catch (const Problem& p) {
-    warnings.add(shown + p.text + "; diffuse grey stands for it");
+    warnings.add(shown + p.text + "; diffuse grey replaces it");
   } catch (const InputError& e) {
-    warnings.add(shown + e.reason() + "; diffuse grey stands for it");
+    warnings.add(shown + e.reason() + "; diffuse grey replaces it");
   }
   return m;
 }

@@ -121,7 +121,7 @@ void add_only_mesh(Mesh mesh, Scene& scene) {
   clean_mesh(mesh, scene.warnings);
   scene.materials.emplace_back();
   if (mesh.triangles.empty()) {
-    scene.warnings.add("the scene shows no triangles");
+    scene.warnings.add("the scene has no visible triangles");
     return;
   }
   scene.meshes.push_back(std::move(mesh));

@@ -81,8 +81,7 @@ bool TextureLoader::was_asked_for(const std::string& image) const {
 
 int32_t TextureLoader::missing(const std::string& key, const std::string& problem,
                                const Texture& look) {
-  scene_.warnings.add(key + ": " + problem +
-                      (look.is_srgb ? "; grey stands for it" : "; left out"));
+  scene_.warnings.add(key + ": " + problem + (look.is_srgb ? "; grey replaces it" : "; left out"));
   return constant(key, look);
 }
 
@@ -133,8 +132,7 @@ Texture TextureLoader::reduced(Texture texture) {
   const uint64_t left = max_texel_bytes_ - std::min(max_texel_bytes_, texel_bytes_);
   if (texel_bytes(texture) <= left) return texture;
   scene_.warnings.add(
-      "images are shown at half their size or less: those of the scene together need too much "
-      "memory");
+      "images are reduced to half their size or less: together they need too much memory");
   while (texel_bytes(texture) > left && (texture.width > 1 || texture.height > 1))
     texture = halved(std::move(texture));
   return texture;

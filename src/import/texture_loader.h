@@ -57,7 +57,7 @@ class TextureLoader {
   // warnings; it must differ from other keys and from all paths.
   int32_t from_memory(std::span<const uint8_t> bytes, const std::string& key, const Texture& look);
 
-  // Returns the constant stand-in texture, with the warning "KEY: PROBLEM; grey stands for it".
+  // Returns the constant stand-in texture, with the warning "KEY: PROBLEM; grey replaces it".
   int32_t missing(const std::string& key, const std::string& problem, const Texture& look);
 
   // True if an image of that path or key has been requested.

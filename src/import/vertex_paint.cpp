@@ -183,9 +183,9 @@ void VertexPainter::paint(Mesh& mesh, const std::vector<TextureValue>& colors, b
   const bool is_second_free = mesh.uvs_2.empty() && !uses_second_uvs(scene_, m);
   if ((is_textured && !is_second_free) || 4 * mesh.triangles.size() > max_texels - texels_) {
     scene_.warnings.add(is_textured && !is_second_free
-                            ? "colours of the vertices of meshes with two sets of texture "
-                              "coordinates are shown as their mean"
-                            : "too many coloured vertices: the mean of a mesh is shown");
+                            ? "vertex colours of meshes with two sets of texture coordinates are "
+                              "shown as their mean"
+                            : "too many coloured vertices: the mean of each mesh is shown");
     mesh.material = tinted(mesh.material, mean_over(mesh, colors));
     return;
   }
@@ -193,7 +193,7 @@ void VertexPainter::paint(Mesh& mesh, const std::vector<TextureValue>& colors, b
   if (is_textured && m.is_alpha_masked) {
     const TextureValue mean = mean_over(mesh, colors);
     if (mean.alpha < 1) {
-      scene_.warnings.add("alpha of the vertices of textured meshes is shown as its mean");
+      scene_.warnings.add("vertex alpha of textured meshes is shown as its mean");
       mesh.material = tinted(mesh.material, {Rgb{1}, mean.alpha});
     }
   }

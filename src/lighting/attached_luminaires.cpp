@@ -98,7 +98,7 @@ void attach_to_all(Scene& scene, const std::string& pattern, const Luminaire& lu
                    const Rgb& scale, const Vec3& down) {
   const FittingNodes nodes = nodes_fitting(scene, pattern);
   if (nodes.names.empty())
-    throw UsageError("--luminaire: no name fits '" + pattern + "' (troffer info lists lights)");
+    throw UsageError("--luminaire: no name matches '" + pattern + "' (troffer info lists lights)");
   size_t attached = 0;
   std::string problem;
   for (const std::string& name : nodes.names) {
@@ -112,7 +112,7 @@ void attach_to_all(Scene& scene, const std::string& pattern, const Luminaire& lu
   }
   if (attached == 0) throw UsageError(problem);
   if (attached < nodes.names.size())
-    scene.warnings.add(fmt::format("{} ('{}' fits {} more, which are left as they are)", problem,
+    scene.warnings.add(fmt::format("{} ('{}' matches {} more, which stay unchanged)", problem,
                                    pattern, nodes.names.size() - attached));
 }
 
@@ -123,12 +123,13 @@ Luminaire read_and_check_luminaire(const std::string& path, WarningLog& warnings
   const double lumens = flux(l.web), stated = l.lamp_lumens * l.output_ratio;
   if (stated > 0 && std::abs(lumens - stated) > lumens_tolerance * stated)
     warnings.add(
-        fmt::format("{}: its intensities add up to {:.5g} lm, its lamps and its light output ratio "
-                    "to {:.5g} lm",
+        fmt::format("{}: its intensities add up to {:.5g} lm, but its lamps and light output ratio "
+                    "give {:.5g} lm",
                     path, lumens, stated));
   else if (l.lamp_lumens > 0 && lumens > (1 + lumens_tolerance) * l.lamp_lumens)
-    warnings.add(fmt::format("{}: its intensities add up to {:.5g} lm, its lamps to {:.5g} lm",
-                             path, lumens, l.lamp_lumens));
+    warnings.add(
+        fmt::format("{}: its intensities add up to {:.5g} lm, but its lamps give {:.5g} lm", path,
+                    lumens, l.lamp_lumens));
   return l;
 }
 

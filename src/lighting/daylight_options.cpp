@@ -93,8 +93,8 @@ double parse_degrees(const std::string& part, const char* what, double most,
   if (!v)
     throw UsageError(fmt::format("--at: '{}': the {} '{}' is not a number", text, what, part));
   if (std::abs(*v) > most)
-    throw UsageError(fmt::format("--at: '{}': the {} {} does not lie between -{} and {} degrees",
-                                 text, what, *v, most, most));
+    throw UsageError(fmt::format("--at: '{}': the {} {} is not between -{} and {} degrees", text,
+                                 what, *v, most, most));
   return *v;
 }
 
@@ -158,8 +158,8 @@ void add_weather(Scene& scene, const DaylightOptions& o, const Compass& compass)
   if (!(weather.diffuse_horizontal > 0 || weather.direct_normal > 0)) {
     scene.warnings.add(
         weather.global_horizontal > 0
-            ? fmt::format("--weather: that hour has {:.5g} W/m2 on the ground, but neither direct "
-                          "nor diffuse light: it stays dark",
+            ? fmt::format("--weather: this hour has {:.5g} W/m2 of global irradiance but neither "
+                          "direct nor diffuse irradiance: the sky stays dark",
                           weather.global_horizontal)
             : std::string("--weather: no light comes from sky and sun at that hour"));
     return;
@@ -197,7 +197,7 @@ void add_asked_sky(Scene& scene, const DaylightOptions& o, const Compass& compas
   const bool has_own_ground = !has_sky && !o.environment.empty();
   request.ground_reflectance = has_own_ground ? 0 : o.ground;
   if (has_sky && needs_sun(request) && !request.sun)
-    throw UsageError("--sky " + o.sky + " depends on where the sun stands: give --sun or --at");
+    throw UsageError("--sky " + o.sky + " depends on the position of the sun: give --sun or --at");
   if (request.sun && !(request.sun->altitude_deg > 0)) {
     // With the sun below the horizon, only a sky that is independent of the sun keeps its requested
     // brightness.
@@ -214,7 +214,7 @@ void add_asked_sky(Scene& scene, const DaylightOptions& o, const Compass& compas
   const bool is_dark = request.sun && request.sun->direct_lx && *request.sun->direct_lx == 0;
   if (request.sun && !has_sun && !is_dark)
     scene.warnings.add("--sky " + o.sky +
-                       " hides the sun (--sun AZIMUTH,ALTITUDE,LUX shows it all the same)");
+                       " hides the sun (--sun AZIMUTH,ALTITUDE,LUX shows it anyway)");
 }
 
 void warn_of_unused(Scene& scene, const DaylightOptions& o) {
@@ -232,7 +232,7 @@ void warn_of_unused(Scene& scene, const DaylightOptions& o) {
 }  // namespace
 
 const char* const default_sky_warning =
-    "the scene has no light: an even sky of 10000 lx lights it (--sky chooses another, --sky none "
+    "the scene has no light: a uniform sky of 10000 lx is added (--sky chooses another, --sky none "
     "keeps it dark)";
 
 Vec3d parse_vector(const std::string& text, const char* option) {

@@ -73,7 +73,7 @@ Row parse_row(const CsvReader& table, const CsvRow& source, const std::vector<si
       v[i] = table.number(source, where[i], columns[i], most_number);
   }
   if (has[4] != has[5] || has[5] != has[6])
-    table.fail(source, where[4], "a direction has three numbers");
+    table.fail(source, where[4], "a direction needs three numbers");
   row.position = {v[1], v[2], v[3]};
   row.down = {v[4], v[5], v[6]};
   row.rotation_deg = v[7];

@@ -54,7 +54,7 @@ Corners parse_portal(const Scene& scene, const std::string& text, bool& is_name)
   for (size_t i = 0; i + 2 < v.size(); i += 3)
     p.push_back(Vec3d{v[i], v[i + 1], v[i + 2]} - scene.origin);
   if (v.size() != 12 || !is_rectangle(p))
-    throw UsageError("--portal: '" + text + "' is no rectangle x,y,z, … of four corners");
+    throw UsageError("--portal: '" + text + "' is not a rectangle of four corners x,y,z, …");
   return {Vec3(p[0]), Vec3(p[1]), Vec3(p[2]), Vec3(p[3])};
 }
 
@@ -127,8 +127,8 @@ void warn_of_what_is_beyond(Scene& scene, const std::vector<Corners>& portals) {
   }
   if (n > 0)
     scene.warnings.add(fmt::format(
-        "--portal: {} triangles lie beyond it, where none of its light reaches, and reflect none "
-        "into the room: it belongs outside of blinds, reveals and ground",
+        "--portal: {} triangles lie outside it, where its light does not reach them, so they "
+        "reflect none into the room: place it outside of blinds, reveals and ground",
         n));
 }
 
@@ -160,7 +160,7 @@ void add_portals(Scene& scene, const std::vector<std::string>& texts) {
     is_used = true;
   }
   if (is_used) warn_of_what_is_beyond(scene, portals);
-  if (!is_used) scene.warnings.add("--portal does nothing without light from beyond the scene");
+  if (!is_used) scene.warnings.add("--portal does nothing without an environment light");
 }
 
 }  // namespace troffer

@@ -61,7 +61,7 @@ struct Date {
 Date parse_date(const std::string& text) {
   TimeText t(text, "--date", "06-21T11:30, in the file's standard time");
   const int first = t.number("the month", 4, 1, 9999);
-  if (first > 99) t.fail("no year belongs here: the file's rows have their own");
+  if (first > 99) t.fail("give no year: the file's rows have their own");
   if (first > 12) t.fail("the month " + std::to_string(first) + " does not lie between 1 and 12");
   Date d;
   d.month = first;
@@ -72,7 +72,7 @@ Date parse_date(const std::string& text) {
   const TimeOfDay time = t.time_of_day(false);
   d.hour = time.hour;
   d.minute = time.minute;
-  if (!t.is_at_end()) t.fail("'" + std::string(t.rest()) + "' follows the minute");
+  if (!t.is_at_end()) t.fail("'" + std::string(t.rest()) + "' must not follow the minute");
   return d;
 }
 

@@ -20,7 +20,7 @@ namespace {
 constexpr double patience = 120;  // seconds without a message from rank 0
 
 [[noreturn]] void exit_leader_is_silent() {
-  fmt::print(stderr, "error: nothing has been heard of process 0 for {} s\n", patience);
+  fmt::print(stderr, "error: no message from process 0 for {} s\n", patience);
   _exit(troffer::exit_bad_input);
 }
 
@@ -33,7 +33,8 @@ bool has_other_launcher() {
 int run_alone(int argc, char** argv) {
   if (!has_other_launcher()) return troffer::run(argc, argv, nullptr);
   fmt::print(stderr,
-             "error: started by the launcher of another MPI than this program is built with\n");
+             "error: started by the launcher of a different MPI than the one this program was "
+             "built with\n");
   return troffer::exit_usage;
 }
 

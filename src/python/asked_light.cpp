@@ -66,25 +66,27 @@ std::vector<std::string> path_and_numbers(const py::handle& value, size_t most,
 
 // Returns the text of a datetime, or the given text.
 std::string moment(const py::handle& value) {
-  if (!py::hasattr(value, "isoformat")) return text(value, "at: its time is a text or a datetime");
+  if (!py::hasattr(value, "isoformat"))
+    return text(value, "at: the time must be a string or a datetime");
   if (value.attr("utcoffset")().is_none()) throw UsageError("at: a datetime must have a time zone");
   return value.attr("isoformat")(py::arg("timespec") = "seconds").cast<std::string>();
 }
 
 std::string place_and_time(const py::handle& value) {
-  static constexpr const char* expected = "at: (latitude, longitude, time)";
+  static constexpr const char* expected = "at must be (latitude, longitude, time)";
   const std::vector<py::object> all = items(value, expected);
   if (all.size() != 3) throw py::type_error(expected);
   return joined({number(all[0]), number(all[1]), moment(all[2])});
 }
 
 std::string date(const py::handle& value) {
-  if (!py::hasattr(value, "strftime")) return text(value, "date: a text or a datetime");
+  if (!py::hasattr(value, "strftime")) return text(value, "date must be a string or a datetime");
   return value.attr("strftime")("%m-%dT%H:%M").cast<std::string>();
 }
 
 std::string portal(const py::handle& value) {
-  static constexpr const char* expected = "portal: a name, or four corners (x, y, z), or several";
+  static constexpr const char* expected =
+      "portal must be a name, four corners (x, y, z), or a list of these";
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
   std::vector<std::string> corners;
   for (const py::object& corner : items(value, expected))
@@ -95,10 +97,11 @@ std::string portal(const py::handle& value) {
 // Parses one portal or several. In a list of several, the first one's first item is no number.
 std::vector<std::string> portals(const py::handle& value) {
   if (py::isinstance<py::str>(value)) return {portal(value)};
-  const std::vector<py::object> all = items(value, "portal: a name, or four corners (x, y, z)");
+  const std::vector<py::object> all =
+      items(value, "portal must be a name or four corners (x, y, z)");
   const bool is_named = !all.empty() && py::isinstance<py::str>(all[0]);
   if (!all.empty() && !is_named) {
-    const std::vector<py::object> first = items(all[0], "portal: a corner is (x, y, z)");
+    const std::vector<py::object> first = items(all[0], "portal: a corner must be (x, y, z)");
     if (first.empty() || !py::hasattr(first[0], "__iter__")) return {portal(value)};
   }
   std::vector<std::string> texts;
@@ -108,7 +111,7 @@ std::vector<std::string> portals(const py::handle& value) {
 
 std::string environment(const py::handle& value) {
   std::vector<std::string> parts =
-      path_and_numbers(value, 1, "environment: a path, or (path, scale)");
+      path_and_numbers(value, 1, "environment must be a path or (path, scale)");
   // The explicit scale keeps a comma in the file name from being taken for a separator.
   if (parts.size() == 1) parts.emplace_back("1");
   return joined(parts);
@@ -116,13 +119,13 @@ std::string environment(const py::handle& value) {
 
 std::vector<std::string> luminaires(const py::handle& value) {
   static constexpr const char* expected =
-      "luminaires: {name: path}, {name: (path, lumens)} or {name: (path, lumens, kelvin)}";
+      "luminaires must be {name: path}, {name: (path, lumens)} or {name: (path, lumens, kelvin)}";
   if (!py::isinstance<py::dict>(value)) throw py::type_error(expected);
   std::vector<std::string> all;
   for (const auto& [name, file] : py::reinterpret_borrow<py::dict>(value)) {
     const std::string node = text(name, expected);
     if (node.find('=') != std::string::npos)
-      throw UsageError("luminaires: a name with '=' cannot be told from its file");
+      throw UsageError("luminaires: a name must not contain '='");
     all.push_back(node + "=" + joined(path_and_numbers(file, 2, expected)));
   }
   return all;
@@ -131,7 +134,7 @@ std::vector<std::string> luminaires(const py::handle& value) {
 double in_range(const py::handle& value, double least, double most, const char* what) {
   const auto v = py::float_(py::reinterpret_borrow<py::object>(value)).cast<double>();
   if (!(v >= least && v <= most))
-    throw UsageError(fmt::format("{} lies between {} and {}", what, least, most));
+    throw UsageError(fmt::format("{} must lie between {} and {}", what, least, most));
   return v;
 }
 
@@ -141,8 +144,11 @@ const std::map<std::string, Taker>& takers() {
   using O = DaylightOptions;
   using V = const py::handle&;
   static const std::map<std::string, Taker> all{
-      {"sky", [](O& o, V v) { o.sky = text(v, "sky: a text"); }},
-      {"sun", [](O& o, V v) { o.sun = numbers(v, "sun: (azimuth, altitude) or with lux"); }},
+      {"sky", [](O& o, V v) { o.sky = text(v, "sky must be a string"); }},
+      {"sun",
+       [](O& o, V v) {
+         o.sun = numbers(v, "sun must be (azimuth, altitude) or (azimuth, altitude, lux)");
+       }},
       {"at", [](O& o, V v) { o.at = place_and_time(v); }},
       {"turbidity", [](O& o, V v) { o.turbidity = in_range(v, 1, 10, "turbidity"); }},
       {"weather", [](O& o, V v) { o.weather = path(v); }},
@@ -158,7 +164,7 @@ const std::map<std::string, Taker>& takers() {
       {"luminaires", [](O& o, V v) { o.luminaires = luminaires(v); }},
       {"luminaire_list", [](O& o, V v) { o.luminaire_list = path(v); }},
       {"light_radius", [](O& o, V v) { o.light_radius = in_range(v, 1e-6, 1e6, "light_radius"); }},
-      {"up", [](O& o, V v) { o.up = numbers(v, "up: (x, y, z)"); }},
+      {"up", [](O& o, V v) { o.up = numbers(v, "up must be (x, y, z)"); }},
   };
   return all;
 }
@@ -197,25 +203,19 @@ std::string in_script_words(const std::string& message) {
 }
 
 const char* const add_light_help =
-    "Adds light as the program's options do, and makes parts of the scene shine; what a call adds "
-    "is like lights of the file: light(), dimmer.\n\n"
-    "sky: 'even', 'overcast', 'clear', 'cie:1' to 'cie:15', each with ',LUX' of a horizontal plane "
-    "or without, 'perez:DNI,DHI' in W/m2, or 'none'\n"
-    "sun: (azimuth, altitude) or (azimuth, altitude, lux), degrees clockwise from north and above "
-    "the horizon\n"
-    "at: (latitude, longitude, time), the sun by place and time: a datetime with a time zone, or "
-    "such as '2026-06-21T12:00+02:00'\n"
-    "turbidity: Linke's, 1 to 10, of a clear sky\n"
-    "weather, date: path of an .epw file, and 'MM-DDTHH:MM' (or a datetime) in its standard time; "
-    "or with at instead of date\n"
-    "north: degrees by which it lies clockwise from the file's; ground: reflectance\n"
-    "environment: path of an image, or (path, scale); environment_rotation: degrees\n"
-    "portal: name of a part of the scene, or four corners (x, y, z), or a list of such\n"
-    "luminaires: {name: path of .ies or .ldt}, or {name: (path, lumens[, kelvin])}; lumens may be "
-    "None\n"
-    "luminaire_list: path of a .csv of luminaires to add\n"
-    "light_radius: metres; points and spots become spheres\n"
-    "up: (x, y, z)\n\n"
-    "If it raises, the scene is as it was. ValueError, TypeError, InputError for files.";
+    "Adds light to the scene as the program's options do. Added lights are dimmed and named like "
+    "lights of the file (see light()).\n\nsky: 'even', 'overcast', 'clear', 'cie:1' to 'cie:15', "
+    "each with ',LUX' on a horizontal plane or without, 'perez:DNI,DHI' in W/m2, or 'none'\nsun: "
+    "(azimuth, altitude) or (azimuth, altitude, lux), degrees clockwise from north and above the "
+    "horizon\nat: (latitude, longitude, time), the sun by place and time: a datetime with a time "
+    "zone, or a string like '2026-06-21T12:00+02:00'\nturbidity: Linke turbidity of a clear sky, 1 "
+    "to 10\nweather, date: path of an .epw file, and 'MM-DDTHH:MM' (or a datetime) in its standard "
+    "time; or with at instead of date\nnorth: degrees clockwise from the file's north; ground: "
+    "reflectance\nenvironment: path of an image, or (path, scale); environment_rotation: "
+    "degrees\nportal: name of a part of the scene, or four corners (x, y, z), or a list of "
+    "these\nluminaires: {name: path of .ies or .ldt}, or {name: (path, lumens[, kelvin])}; lumens "
+    "may be None\nluminaire_list: path of a .csv of luminaires to add\nlight_radius: metres; "
+    "points and spots become spheres\nup: (x, y, z)\n\nRaises ValueError, TypeError, or InputError "
+    "for files; the scene then stays unchanged.";
 
 }  // namespace troffer

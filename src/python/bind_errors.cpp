@@ -7,7 +7,8 @@ namespace py = pybind11;
 
 void bind_errors(py::module_& m) {
   static const py::exception<InputError> input_error(m, "InputError", PyExc_ValueError);
-  input_error.attr("__doc__") = "A file that cannot be used as it is: 'FILE:LINE:COLUMN: what'.";
+  input_error.attr("__doc__") =
+      "A file that cannot be used; the text is 'FILE:LINE:COLUMN: problem'.";
   py::register_exception_translator([](std::exception_ptr p) {
     try {
       if (p) std::rethrow_exception(p);

@@ -21,7 +21,7 @@ using Pixels = py::array_t<float, py::array::c_style | py::array::forcecast>;
 
 Image image_of(const Pixels& a) {
   if (a.ndim() != 3 || a.shape(2) != 3 || a.shape(0) < 1 || a.shape(1) < 1)
-    throw UsageError("a picture is an array of shape (height, width, 3)");
+    throw UsageError("a picture must be an array of shape (height, width, 3)");
   if (a.shape(0) > (1 << 20) || a.shape(1) > (1 << 20))
     throw UsageError("a picture has at most 1048576 rows and columns");
   Image image(int(a.shape(1)), int(a.shape(0)));
@@ -63,14 +63,15 @@ py::array array_of(Image&& made) {
 
 double checked_exposure(double stops) {
   constexpr double most = 60;
-  if (!(std::abs(stops) <= most)) throw UsageError("exposure lies between -60 and 60 stops");
+  if (!(std::abs(stops) <= most)) throw UsageError("exposure must lie between -60 and 60 stops");
   return stops;
 }
 
 void bind_images(py::module_& m) {
-  m.def("compare", &compare_arrays, py::arg("image"), py::arg("reference"),
-        "How far a picture is from a reference, both (height, width, 3): a dict of mean_image, "
-        "mean_reference, average_difference (of 8-bit sRGB values), rmse, relative_rmse, flip.");
+  m.def(
+      "compare", &compare_arrays, py::arg("image"), py::arg("reference"),
+      "Compares a picture with a reference, both (height, width, 3). Returns a dict of mean_image, "
+      "mean_reference, average_difference (of 8-bit sRGB values), rmse, relative_rmse, flip.");
   m.def(
       "read_image",
       [](const std::filesystem::path& path) {
@@ -82,8 +83,8 @@ void bind_images(py::module_& m) {
         return array_of(std::move(image));
       },
       py::arg("path"),
-      "A picture file as linear light: float32 (height, width, 3). PNG, JPEG, WebP and TGA are "
-      "decoded from sRGB.");
+      "Reads a picture file as linear light: float32 (height, width, 3). PNG, JPEG, WebP and TGA "
+      "are decoded from sRGB.");
   m.def(
       "write_image",
       [](const std::filesystem::path& path, const Pixels& pixels, double exposure, bool is_filmic) {
@@ -93,7 +94,8 @@ void bind_images(py::module_& m) {
       },
       py::arg("path"), py::arg("pixels"), py::kw_only(), py::arg("exposure") = 0.0,
       py::arg("filmic") = false,
-      "Writes (height, width, 3) of linear light: .png (exposure in stops), .exr, .hdr, .pfm.");
+      "Writes linear light (height, width, 3) to a file: .png (exposure in stops), .exr, .hdr or "
+      ".pfm.");
 }
 
 }  // namespace troffer

@@ -49,7 +49,7 @@ struct MaterialHandle {
 
 float in_range(double value, double least, double most, const char* what) {
   if (!(value >= least && value <= most))
-    throw UsageError(std::string(what) + " lies between " +
+    throw UsageError(std::string(what) + " must lie between " +
                      py::str(py::float_(least)).cast<std::string>() + " and " +
                      py::str(py::float_(most)).cast<std::string>());
   return float(value);
@@ -60,15 +60,15 @@ void bind_lights(py::module_& m) {
       .def_readonly("name", &LightHandle::name)
       .def_property_readonly(
           "kind", [](const LightHandle& e) { return name_of(e.first().kind); },
-          "'polygon', 'disk', 'sphere', 'mesh', 'point', 'spot', 'distant', 'environment', 'sky' "
-          "or 'sun'; of the first one.")
+          "Kind of the first one: 'polygon', 'disk', 'sphere', 'mesh', 'point', 'spot', 'distant', "
+          "'environment', 'sky' or 'sun'.")
       .def_property_readonly(
           "count", [](const LightHandle& e) { return e.scene->lights_named(e.name).size(); },
-          "How many lights of the scene have this name.")
+          "Number of lights of the scene with this name.")
       .def_property(
           "dimmer", [](const LightHandle& e) { return e.scene->dimmer(e.name); },
           [](const LightHandle& e, double d) { e.scene->set_dimmer(e.name, d); },
-          "Factor on what they send; 1 as the file has it. At least 0.")
+          "Factor on their light, at least 0; 1 leaves it as in the file.")
       .def_property(
           "radiance", [](const LightHandle& e) { return triple(e.scene->radiance(e.name)); },
           [](const LightHandle& e, const Triple& c) { e.scene->set_radiance(e.name, rgb(c)); },
@@ -82,7 +82,7 @@ void bind_lights(py::module_& m) {
 
 void bind_materials(py::module_& m) {
   py::class_<MaterialHandle>(
-      m, "Material", "A material. Where a property has a texture the number is a factor on it.")
+      m, "Material", "A material. If a property has a texture, the number is a factor on it.")
       .def_property_readonly("name", [](const MaterialHandle& h) { return h.get().name; })
       .def_property(
           "base_color", [](const MaterialHandle& h) { return triple(h.get().base_color.value); },
@@ -97,14 +97,14 @@ void bind_materials(py::module_& m) {
             const float checked = in_range(v, 0, 1, "roughness");
             h.change().roughness.value = checked;
           },
-          "0 (a mirror's) to 1.")
+          "0 (mirror) to 1.")
       .def_property(
           "metallic", [](const MaterialHandle& h) { return h.get().metallic.value; },
           [](const MaterialHandle& h, double v) {
             const float checked = in_range(v, 0, 1, "metallic");
             h.change().metallic.value = checked;
           },
-          "0 to 1, of glTF's materials.")
+          "0 to 1, for materials of glTF.")
       .def("__repr__",
            [](const MaterialHandle& h) { return "<troffer.Material '" + h.get().name + "'>"; });
 }
@@ -123,11 +123,11 @@ SkyRequest sky_request(const std::string& kind, const std::optional<double>& lux
   for (int type = 1; type <= 15; ++type)
     if (kind == "cie:" + std::to_string(type)) r.cie_type = type;
   if (r.kind == SkyKind::cie && r.cie_type == 0)
-    throw UsageError("a sky is even, overcast, clear or cie:1 to cie:15");
+    throw UsageError("a sky must be even, overcast, clear or cie:1 to cie:15");
   if (lux) r.diffuse_lx = in_range(*lux, 0, 1e9, "lux");
   if (sun) {
     r.sun = SunRequest{};
-    if (!std::isfinite(sun->first)) throw UsageError("the sun's azimuth is a finite number");
+    if (!std::isfinite(sun->first)) throw UsageError("the sun's azimuth must be a finite number");
     r.sun->azimuth_deg = sun->first;
     r.sun->altitude_deg = in_range(sun->second, 0, 90, "the sun's altitude");
   } else if (needs_sun(r)) {
@@ -155,7 +155,7 @@ void bind_parts(SceneClass& scene) {
             s->lights_named(name);
             return LightHandle{s, name};
           },
-          py::arg("name"), "The lights of this name; ValueError where there are none.")
+          py::arg("name"), "The lights of this name; ValueError if there are none.")
       .def_property_readonly(
           "materials",
           [](const std::shared_ptr<ScriptScene>& s) {
@@ -169,7 +169,7 @@ void bind_parts(SceneClass& scene) {
           [](const std::shared_ptr<ScriptScene>& s, const std::string& name) {
             return MaterialHandle{s, s->material_named(name)};
           },
-          py::arg("name"), "The material of this name; ValueError where there is none, or several.")
+          py::arg("name"), "The material of this name; ValueError if there is none or several.")
       .def(
           "add_sky",
           [](ScriptScene& s, const std::string& kind, const std::optional<double>& lux,
@@ -179,10 +179,9 @@ void bind_parts(SceneClass& scene) {
           py::arg("kind") = "overcast", py::kw_only(), py::arg("lux") = py::none(),
           py::arg("sun") = py::none(), py::arg("north") = 0.0, py::arg("ground") = 0.2,
           "Adds the light 'sky' (and 'sun'). kind: 'even', 'overcast', 'clear', 'cie:1' to "
-          "'cie:15'; lux: what the sky gives a horizontal plane; sun: (azimuth, altitude) in "
-          "degrees, "
-          "clockwise from north, above the horizon; north: degrees by which it lies clockwise from "
-          "the file's; ground: its reflectance.");
+          "'cie:15'; lux: illuminance of a horizontal plane by the sky; sun: (azimuth, altitude) "
+          "in degrees, clockwise from north, above the horizon; north: degrees clockwise from the "
+          "file's north; ground: its reflectance.");
 }
 
 void bind_added_light(SceneClass& scene) {
@@ -202,10 +201,10 @@ void bind_added_light(SceneClass& scene) {
 
 void bind_facts(SceneClass& scene) {
   scene.def_property_readonly("file", [](const ScriptScene& s) { return s.scene().file; })
-      .def_property_readonly("warnings", &warnings, "What was odd in the file, in words.")
+      .def_property_readonly("warnings", &warnings, "Warnings about the file.")
       .def_property_readonly(
           "is_photometric", [](const ScriptScene& s) { return s.scene().is_photometric; },
-          "Light is in cd/m2 (glTF), not in W/(m2 sr).")
+          "True if light is in cd/m2 (glTF), false if it is in W/(m2 sr).")
       .def_property_readonly("triangles",
                              [](const ScriptScene& s) { return triangle_count(s.scene()); })
       .def_property_readonly(
@@ -231,13 +230,13 @@ void bind_facts(SceneClass& scene) {
 }  // namespace
 
 void bind_scene(py::module_& m) {
-  py::class_<Camera>(m, "Camera", "What a picture is seen from: look_at(), Scene.camera().")
+  py::class_<Camera>(m, "Camera", "A camera, made by look_at() or Scene.camera().")
       .def_readonly("name", &Camera::name);
   bind_lights(m);
   bind_materials(m);
   SceneClass scene(m, "Scene",
-                   "A scene: load(). What is changed counts from the next rendering or measurement "
-                   "on. Not for use from several threads at once.");
+                   "A scene, made by load(). Changes take effect with the next rendering or "
+                   "measurement. Not for use from several threads at once.");
   bind_facts(scene);
   bind_parts(scene);
   bind_added_light(scene);

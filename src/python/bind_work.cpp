@@ -59,7 +59,7 @@ void save(const RenderResult& r, const std::filesystem::path& path, std::optiona
 }
 
 void bind_picture(py::module_& m) {
-  py::class_<RenderResult>(m, "Picture", "What Scene.render() makes.")
+  py::class_<RenderResult>(m, "Picture", "Result of Scene.render().")
       .def_property_readonly(
           "pixels",
           [](const py::object& self) {
@@ -67,20 +67,17 @@ void bind_picture(py::module_& m) {
           },
           "float32 (height, width, 3), row 0 on top, linear light; a view, not a copy.")
       .def("__getitem__", &layer_named, py::arg("layer"),
-           "A layer that was asked for (aovs=): float32 (height, width, 3) or (height, width), a "
-           "view.")
+           "A requested layer (aovs=): float32 (height, width, 3) or (height, width), a view.")
       .def_property_readonly("layers", &layer_names, "Names of the layers besides the picture.")
       .def_property_readonly(
           "error", [](const RenderResult& r) { return r.statistics.estimated_error; },
-          "The error that the renderer tells of its picture: root of the mean square of the "
-          "pixels' "
-          "standard errors, over the mean luminance.")
+          "Estimated error of the picture: root mean square of the pixels' standard errors, over "
+          "the mean luminance.")
       .def_property_readonly("is_complete", [](const RenderResult& r) { return r.is_complete; })
-      .def(
-          "save", &save, py::arg("path"), py::kw_only(), py::arg("exposure") = py::none(),
-          py::arg("filmic") = true,
-          "Writes .png (exposure in stops, by itself without; filmic: with a tone map), .exr (with "
-          "all layers), .hdr or .pfm (linear).");
+      .def("save", &save, py::arg("path"), py::kw_only(), py::arg("exposure") = py::none(),
+           py::arg("filmic") = true,
+           "Writes .png (exposure in stops, automatic if not given; filmic: with a tone curve), "
+           ".exr (with all layers), .hdr or .pfm (linear).");
 }
 
 Aov aov_named(const std::string& name) {
@@ -100,11 +97,11 @@ struct Common {
     const std::optional<Method> m = Method::find(method);
     if (!m) throw UsageError("there is no method '" + method + "', but " + Method::names());
     const std::optional<Indirect> i = Indirect::find(indirect);
-    if (!i) throw UsageError("indirect is 'auto', 'none', 'radiosity' or 'cells'");
-    if (!(error > 0 && error <= 1)) throw UsageError("error lies above 0, and not above 1");
-    if (spp < 0 || spp > (1 << 24)) throw UsageError("spp lies between 0 and 16777216");
-    if (depth < -1) throw UsageError("depth is not negative, or -1 for no limit");
-    if (threads < 0 || threads > 4096) throw UsageError("threads lies between 0 and 4096");
+    if (!i) throw UsageError("indirect must be 'auto', 'none', 'radiosity' or 'cells'");
+    if (!(error > 0 && error <= 1)) throw UsageError("error must be above 0 and at most 1");
+    if (spp < 0 || spp > (1 << 24)) throw UsageError("spp must lie between 0 and 16777216");
+    if (depth < -1) throw UsageError("depth must be at least 0, or -1 for no limit");
+    if (threads < 0 || threads > 4096) throw UsageError("threads must lie between 0 and 4096");
     options.method = *m;
     options.indirect = *i;
     options.error = error;
@@ -132,8 +129,9 @@ struct PictureRequest {
     if (common.spp > 0) o.spp = common.spp;
     constexpr int largest = 65536;
     if (width < 0 || height < 0 || width > largest || height > largest)
-      throw UsageError("width and height lie between 0 and 65536");
-    if (max_spp < 0 || max_spp > (1 << 20)) throw UsageError("max_spp lies between 0 and 1048576");
+      throw UsageError("width and height must lie between 0 and 65536");
+    if (max_spp < 0 || max_spp > (1 << 20))
+      throw UsageError("max_spp must lie between 0 and 1048576");
     o.width = width;
     o.height = height;
     o.max_spp = max_spp;
@@ -153,7 +151,7 @@ std::unique_ptr<RenderResult> render_scene(ScriptScene& s, const py::object& cam
   else if (py::isinstance<Camera>(camera))
     given = camera.cast<Camera>();
   else
-    throw py::type_error("camera: a name, a Camera or None");
+    throw py::type_error("camera must be a name, a Camera or None");
   auto result = std::make_unique<RenderResult>();
   run_for_python(progress, [&](const StopFlag& stop, std::atomic<double>& fraction) {
     const Camera seen_from = name ? s.camera(*name) : *given;
@@ -172,7 +170,7 @@ std::unique_ptr<RenderResult> render_scene(ScriptScene& s, const py::object& cam
 // `up` as the normal.
 std::vector<MeasuringPoint> measuring_points(const Points& array, Vec3 up) {
   if (array.ndim() != 2 || (array.shape(1) != 3 && array.shape(1) != 6))
-    throw UsageError("points are an array of shape (n, 6), or (n, 3)");
+    throw UsageError("points must be an array of shape (n, 6) or (n, 3)");
   std::vector<MeasuringPoint> points;
   const auto a = array.unchecked<2>();
   for (py::ssize_t i = 0; i < a.shape(0); ++i) {
@@ -180,7 +178,7 @@ std::vector<MeasuringPoint> measuring_points(const Points& array, Vec3 up) {
     if (a.shape(1) == 6) p.normal = {float(a(i, 3)), float(a(i, 4)), float(a(i, 5))};
     const double all = p.position.x + p.position.y + p.position.z + double(dot(p.normal, p.normal));
     if (!std::isfinite(all) || dot(p.normal, p.normal) == 0)
-      throw UsageError("points are finite numbers, and normals not zero");
+      throw UsageError("points must be finite numbers, and normals must not be zero");
     points.push_back(p);
   }
   return points;
@@ -214,7 +212,7 @@ py::array column(const py::object& self, const T Measurement::*member) {
 }
 
 void bind_measurements(py::module_& m) {
-  py::class_<MeasureResult>(m, "Measurements", "What Scene.measure() finds, point by point.")
+  py::class_<MeasureResult>(m, "Measurements", "Result of Scene.measure(), point by point.")
       .def_property_readonly(
           "illuminance",
           [](const py::object& self) { return column(self, &Measurement::illuminance_lx); },
@@ -222,7 +220,8 @@ void bind_measurements(py::module_& m) {
       .def_property_readonly(
           "standard_error",
           [](const py::object& self) { return column(self, &Measurement::standard_error); },
-          "float64 (n,), lx: illuminance +- 1.96 of these holds the true value 95 times of 100.")
+          "float64 (n,), lx: illuminance +- 1.96 of these contains the true value in 95 of 100 "
+          "cases.")
       .def_property_readonly(
           "irradiance",
           [](const py::object& self) {
@@ -256,10 +255,9 @@ void bind_work(py::module_& m) {
       py::arg("max_spp") = 0, py::arg("indirect") = "auto",
       py::arg("aovs") = std::vector<std::string>{}, py::arg("depth") = -1, py::arg("threads") = 0,
       py::arg("seed") = 0, py::arg("progress") = py::none(),
-      "Renders what a camera (a name, or a Camera) sees, as `troffer render` does. width, height: "
-      "pixels, by the camera where 0 (of one alone, the other follows from the camera's "
-      "proportions); "
-      "error: what a pixel may be off, relative; aovs: layers "
+      "Renders the view of a camera (a name, or a Camera), as `troffer render` does. width, "
+      "height: pixels; 0: the camera's size (if only one is given, the other follows from the "
+      "camera's proportions); error: allowed standard error of a pixel, relative; aovs: layers "
       "besides the picture ('albedo' 'normal' 'depth' 'position' 'direct' 'indirect' 'error' ...); "
       "progress: called with the fraction done, from this thread. Other threads run meanwhile; "
       "Ctrl-C raises KeyboardInterrupt.");
@@ -274,8 +272,8 @@ void bind_work(py::module_& m) {
       py::arg("points"), py::kw_only(), py::arg("method") = "certified", py::arg("error") = 0.01,
       py::arg("spp") = 0, py::arg("indirect") = "auto", py::arg("depth") = -1,
       py::arg("threads") = 0, py::arg("seed") = 0, py::arg("progress") = py::none(),
-      "Illuminance at points, float64 (n, 6): x, y, z in metres and the normal of the side that is "
-      "lit; or (n, 3): facing up. As `troffer measure` finds it.");
+      "Measures illuminance at points, as `troffer measure` does. points: float64 (n, 6): x, y, z "
+      "in metres and the normal of the lit side; or (n, 3): facing up.");
 }
 
 }  // namespace troffer

@@ -48,7 +48,7 @@ double ScriptScene::dimmer(const std::string& name) const {
 
 void ScriptScene::set_dimmer(const std::string& name, double dimmer) {
   if (!std::isfinite(dimmer) || dimmer < 0)
-    throw UsageError("a dimmer is a finite number, at least 0");
+    throw UsageError("a dimmer must be a finite number, at least 0");
   for (const size_t i : lights_named(name)) dimmed_[i].dimmer = dimmer;
   apply_dimmers();
 }
@@ -59,7 +59,7 @@ Rgb ScriptScene::radiance(const std::string& name) const {
 
 void ScriptScene::set_radiance(const std::string& name, Rgb radiance) {
   if (!is_finite(radiance) || std::min({radiance.r, radiance.g, radiance.b}) < 0)
-    throw UsageError("a radiance is three finite numbers, at least 0");
+    throw UsageError("a radiance must be three finite numbers, each at least 0");
   for (const size_t i : lights_named(name)) dimmed_[i].radiance = radiance;
   apply_dimmers();
 }

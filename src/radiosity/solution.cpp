@@ -26,7 +26,7 @@ void add_mesh_warnings(const RadiositySolution& s, std::vector<std::string>& out
   if (mesh.coarsened > 1.01f || mesh.join_angle_deg > 1.01f * wanted.join_angle_deg)
     out.push_back(fmt::format(
         "radiosity: with at most {} elements and {} sheets, elements are {:.2g} times as long as "
-        "wanted, and small triangles are joined whose directions differ by up to {:.0f} degrees",
+        "requested, and small triangles whose directions differ by up to {:.0f} degrees are joined",
         wanted.max_elements, wanted.max_sheets, double(mesh.coarsened),
         double(mesh.join_angle_deg)));
 }
@@ -40,7 +40,7 @@ std::vector<std::string> radiosity_warnings(const RadiositySolution& s) {
   const auto percent = [&](double part) { return 100 * part / b.emitted; };
   if (b.emitted > 0 && !(std::abs(b.unaccounted) <= allowed * b.emitted))
     out.push_back(fmt::format(
-        "radiosity: {:.1f} % of the emitted power came to no sample point and did not leave the "
+        "radiosity: {:.1f} % of the emitted power reached no sample point and did not leave the "
         "scene (absorbed {:.1f} %, specular {:.1f} %, escaped {:.1f} %, not shot {:.1f} %): "
         "elements of {:.3g} m are too coarse for this scene; --element-size makes them smaller",
         percent(b.unaccounted), percent(b.absorbed), percent(b.lost_to_specular),
@@ -49,8 +49,7 @@ std::vector<std::string> radiosity_warnings(const RadiositySolution& s) {
   if (s.end == RadiosityEnd::out_of_shots || s.end == RadiosityEnd::out_of_rays)
     out.push_back(
         fmt::format("radiosity: ended after {} shots and {:.0f} million rays with {:.1f} % of the "
-                    "emitted power "
-                    "unshot; that much is spread evenly as an estimate",
+                    "emitted power unshot; this share is distributed evenly as an estimate",
                     s.shots, double(s.rays) * 1e-6, b.emitted > 0 ? percent(b.unshot) : 0.0));
   return out;
 }

@@ -217,7 +217,7 @@ Header header_of(std::span<const uint8_t> bytes, const std::string& file) {
     body.take(h.patches, sizeof(FilePatch));
   };
   const auto h = checked_header<Header>(solution_file, bytes, file, count);
-  if (!is_sane(h)) refuse("radiosity solution has values that none can have");
+  if (!is_sane(h)) refuse("radiosity solution has invalid values");
   return h;
 }
 
@@ -228,12 +228,13 @@ RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::strin
                                 const RadiosityOptions* options, int threads) {
   const Header h = header_of(bytes, file);
   if (h.end == uint32_t(RadiosityEnd::stopped))
-    throw InputError(file, 0, 0,
-                     fmt::format("radiosity solution was interrupted after {} shots: let troffer "
-                                 "radiosity make it to the end",
-                                 h.shots));
+    throw InputError(
+        file, 0, 0,
+        fmt::format(
+            "radiosity solution was interrupted after {} shots: run troffer radiosity to the end",
+            h.shots));
   if (h.scene_key != radiosity_scene_key(scene))
-    throw InputError(file, 0, 0, "radiosity solution belongs to another scene: compute it anew");
+    throw InputError(file, 0, 0, "radiosity solution belongs to another scene: compute it again");
   if (options != nullptr) {
     const FileOptions wanted = packed(*options);
     if (std::memcmp(&wanted, &h.options, sizeof(wanted)) != 0)

@@ -77,7 +77,7 @@ void Checkpoint::read() {
     rest = rest.subspan(8);
     if (size != 0) chunks_.push_back(chunk);
   }
-  if (!rest.empty()) refuse("checkpoint has bytes too many");
+  if (!rest.empty()) refuse("checkpoint has extra bytes at its end");
 }
 
 void Checkpoint::forget_chunks() {
@@ -86,7 +86,7 @@ void Checkpoint::forget_chunks() {
 }
 
 void Checkpoint::refuse_chunks() const {
-  throw InputError(file_, 0, 0, "checkpoint has values that none can have");
+  throw InputError(file_, 0, 0, "checkpoint has invalid values");
 }
 
 bool Checkpoint::take_turn() {

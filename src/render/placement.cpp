@@ -261,8 +261,7 @@ std::vector<std::string> misplaced_points(const PreparedScene& scene,
   }
   if (!outside.empty())
     texts.push_back(fmt::format(
-        "{} outside of the room (number {}); a list with another axis upward than the scene's does "
-        "that",
+        "{} outside of the room (number {}); check that the list has the scene's upward axis",
         counted(outside.size(), "point lies", "points lie"), listed(outside)));
   if (!hidden.empty())
     texts.push_back(fmt::format("{} within a body, where no light arrives (number {})",

@@ -32,8 +32,8 @@ std::string lights_left_out(const Scene& scene) {
                                [](const Light& e) { return !has_surface(e.kind); });
   if (n == 0) return {};
   return fmt::format(
-      "radiosity: indirect light is without that of {} light{} that {} no surface (points, spots, "
-      "lights at infinity)",
+      "radiosity: indirect light leaves out {} light{} that {} no surface (points, spots, lights "
+      "at infinity)",
       n, n == 1 ? "" : "s", n == 1 ? "has" : "have");
 }
 

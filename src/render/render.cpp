@@ -36,8 +36,8 @@ void check_camera(const ViewingCamera& camera, const PixelRect& window, const Pr
         if (!(length(abs(r.origin)) < 1e15f) || !is_finite(r.direction))
           throw InputError(scene.scene.file, 0, 0,
                            "camera '" + name +
-                               "' cannot be used: it is too far away, or its field "
-                               "of view or lens is beyond measure");
+                               "' cannot be used: it is too far away, or its field of view or lens "
+                               "is out of range");
       }
 }
 
@@ -214,13 +214,13 @@ PlannedPart Picture::planned_viewing_rays(const MethodPlan& plan,
     const PixelSampling s = sampling_by_paths(*plan.forecast, error_by_paths(settings.error),
                                               most_by_paths(settings.most_viewing_rays));
     return {"viewing rays", fmt::format("{} per pixel, up to {}", s.first, s.most),
-            "further ones until the noise of the pixel is allowed"};
+            "more until the noise of the pixel is within the allowed error"};
   }
   const int most = most_viewing_rays(options_).in_pixel;
   if (most <= options_.spp)
     return {"viewing rays", fmt::format("{} per pixel", options_.spp), "no refinement"};
   return {"viewing rays", fmt::format("{} per pixel, up to {}", options_.spp, most),
-          "further ones where samples or neighbours differ"};
+          "more where samples or neighbours differ"};
 }
 
 // Leaves the result without layers if it was stopped before there was anything to show.

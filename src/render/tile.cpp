@@ -42,8 +42,8 @@ PixelRect share_of(const PixelRect& asked, const TileRules& rules, int part, int
   PixelRect tiles{0, 0, (asked.x1 - x + side - 1) / side, (asked.y1 - y + side - 1) / side};
   const int64_t count = int64_t(tiles.width()) * tiles.height();
   if (parts > count)
-    throw UsageError("--part: the picture has but " + std::to_string(count) + " tiles of " +
-                     std::to_string(side) + "x" + std::to_string(side) + " pixels to share out");
+    throw UsageError("--part: the picture has only " + std::to_string(count) + " tiles of " +
+                     std::to_string(side) + "x" + std::to_string(side) + " pixels to divide");
   // Cut in two across the longer side until one share is left.
   int64_t first = part - 1, left = parts;
   while (left > 1) {

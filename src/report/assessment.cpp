@@ -203,7 +203,7 @@ void drop_covered(const PreparedScene& scene, const Vec3d& up, SurfaceResult& s,
   if (open == std::ptrdiff_t(points.size())) return;
   notes.push_back(fmt::format("{}: {} of {} points lie under or within something{}", s.surface.name,
                               points.size() - size_t(open), points.size(),
-                              open > 0 ? " and are left out" : "; they are measured all the same"));
+                              open > 0 ? " and are left out" : "; they are measured anyway"));
   if (open == 0) return;
   size_t i = 0;
   std::erase_if(s.grid.points, [&](const GridPoint&) { return is_covered[i++] != 0; });
@@ -236,8 +236,7 @@ void place_surfaces(const PreparedScene& scene, const AssessmentOptions& o, Asse
   }
   if (a.surfaces.empty())
     throw UsageError(
-        "no desk and no floor was found: --surface or --surfaces names what is to be "
-        "assessed");
+        "no desk and no floor was found: name what to assess by --surface or --surfaces");
 }
 
 void note_unrated(Assessment& a) {
@@ -247,8 +246,8 @@ void note_unrated(Assessment& a) {
       sees_any = sees_any || (g.surface == i && !g.glare.luminaires.empty());
     if (sees_any && worst_glare(a, i) == nullptr)
       a.notes.push_back(a.surfaces[i].surface.name +
-                        ": glare could not be rated, since the background is too dark to be "
-                        "measured with this number of samples");
+                        ": glare could not be rated, because the background is too dark to measure "
+                        "with this number of samples");
   }
 }
 

@@ -99,8 +99,8 @@ std::string surfaces_table(const OtherReport& other, const OtherReport& own) {
       const auto &x = (a != nullptr ? *a : none).*member, &y = (b != nullptr ? *b : none).*member;
       cells.insert(cells.end(), {cell_of(x), cell_of(y), difference(x, y)});
     }
-    cells.push_back(a != nullptr ? verdict_of(other, name) : "not there");
-    cells.push_back(b != nullptr ? verdict_of(own, name) : "not there");
+    cells.push_back(a != nullptr ? verdict_of(other, name) : "not included");
+    cells.push_back(b != nullptr ? verdict_of(own, name) : "not included");
     t.add(cells);
   }
   return t.html();
@@ -156,7 +156,7 @@ std::string comparison_section(const Report& r, const OtherReport& other) {
   const OtherReport own = own_of(r);
   std::string h =
       "<h2>Comparison</h2>\n<p>A: " + html_text(other.title) + ". B: " + html_text(own.title) +
-      " (this report). Differences in bold type are larger than their uncertainty.</p>\n" +
+      " (this report). Differences in bold are larger than their uncertainty.</p>\n" +
       surfaces_table(other, own) + differing_requirements(other, own) + power_rows(other, own);
   const std::vector<std::string> plans = report_plans(r);
   const std::vector<uint8_t> plan = plans.empty()

@@ -135,7 +135,7 @@ std::string undecided_list(const Report& r) {
           fmt::format("About {:.0f} samples per point would decide (<code>--spp {:.0f}</code>).",
                       *samples, std::ceil(*samples / 256) * 256);
     else
-      list += "The value is so close to the requirement that no number of samples decides.";
+      list += "The value is so close to the requirement that no number of samples can decide.";
     list += "</li>\n";
   }
   if (list.empty()) return {};
@@ -169,7 +169,7 @@ std::string contributions_table(const Assessment& a) {
     if (!g.is_daylight)
       head.push_back(html_name(g.name) +
                      (g.luminaires > 1 ? fmt::format(" ({})", g.luminaires) : ""));
-  head.insert(head.end(), {"Sum", "Together"});
+  head.insert(head.end(), {"Sum", "All together"});
   HtmlTable t(head, "dense wide");
   for (const SurfaceResult& s : a.surfaces) {
     std::vector<std::string> cells{html_name(s.surface.name)};
@@ -187,9 +187,9 @@ std::string contributions_table(const Assessment& a) {
 }
 
 std::string glare_table(const Assessment& a) {
-  HtmlTable t(
-      {"Surface", "Worst UGR", "Eye x, y, z", "Looks to", "Background", "Mostly by", "Others"},
-      "wide");
+  HtmlTable t({"Surface", "Worst UGR", "Eye x, y, z", "View direction", "Background", "Main source",
+               "Other ratings"},
+              "wide");
   std::vector<size_t> subjects;
   for (size_t i = 0; i < a.surfaces.size(); ++i) subjects.push_back(i);
   subjects.push_back(no_surface);
@@ -208,7 +208,7 @@ std::string glare_table(const Assessment& a) {
       others += (others.empty() ? "" : ", ") + fmt::format("{} without glare", unseen);
     const std::string name = i == no_surface ? "observers" : html_name(a.surfaces[i].surface.name);
     if (worst == nullptr) {
-      if (!others.empty()) t.add({name, "–", "–", "–", "–", "no luminaire is seen", others});
+      if (!others.empty()) t.add({name, "–", "–", "–", "–", "no luminaire in view", others});
       continue;
     }
     t.add({name, figure_cell(worst->ugr) + (worst->is_large ? " *" : ""),
@@ -221,7 +221,7 @@ std::string glare_table(const Assessment& a) {
 
 std::string cylinder_table(const Assessment& a) {
   HtmlTable t({"Above", "Mean Ē<sub>z</sub>", "Minimum", "Uniformity",
-               "Modelling Ē<sub>z</sub>/Ē<sub>h</sub>", "Places"},
+               "Modelling Ē<sub>z</sub>/Ē<sub>h</sub>", "Positions"},
               "wide");
   for (size_t f = 0; f < a.floors.size(); ++f) {
     std::vector<Figure> cylindrical, horizontal;
@@ -248,7 +248,7 @@ std::string luminaires_table(const Assessment& a, const Vec3d& up,
     const double down = -dot(l.aim, up);
     t.add({std::to_string(i + 1), html_name(l.name), std::string(1, char('A' + types[i] % 26)),
            place_cell(l.position),
-           !(length(l.aim) > 0) ? "all around"
+           !(length(l.aim) > 0) ? "all directions"
            : down > 0.9999      ? "down"
            : down < -0.9999     ? "up"
                                 : direction_cell(l.aim),
@@ -275,7 +275,7 @@ std::string power_table(const PowerResult& p) {
   HtmlTable t({"Quantity", "Value"});
   t.add({"Luminous flux, initial", short_number(p.lumens) + " lm"});
   t.add({"Power", p.watts ? short_number(*p.watts) + " W"
-                          : "unknown: no photometric file states it (--power does)"});
+                          : "unknown: no photometric file states it (give it with --power)"});
   t.add({"Floor area within the walls",
          p.floor_area > 0 ? fmt::format("{:.2f} m²", p.floor_area) : "no floor was found"});
   t.add({"Power density", is_known ? fmt::format("{:.2f} W/m²", per_area) : "–"});

@@ -56,12 +56,12 @@ std::string summary(const Report& r) {
   std::string h = "<h2>Summary</h2>\n<p class=\"sub\">";
   if (a.has_electric)
     h += fmt::format(
-        "Electric light. Illuminances are maintained values: initial light × {:.2f}. UGR is that "
-        "of initial light, from the worst place.",
+        "Electric light. Illuminances are maintained values: initial values × {:.2f}. UGR is for "
+        "initial light, at the worst position.",
         r.options.maintenance);
   else
-    h += "Daylight: no luminaire shines.";
-  return h + " ± is the uncertainty of the computation (see the appendix).</p>\n" +
+    h += "Daylight only: no luminaire is on.";
+  return h + " ± is the standard error of the computation (see the appendix).</p>\n" +
          summary_matrix(r) + colour_rendering(r) + undecided_list(r);
 }
 
@@ -77,8 +77,8 @@ std::string plans(const Report& r) {
   for (size_t i = 0; i < drawings.size(); ++i)
     h += figure(drawings[i],
                 (drawings.size() > 1 ? fmt::format("Storey {}. ", i + 1) : std::string()) +
-                    "Floors within their walls, assessed surfaces (blue) and luminaires by their "
-                    "number in the list (yellow).");
+                    "Floors within their walls, assessed surfaces (blue) and luminaires with their "
+                    "numbers in the list (yellow).");
   return h;
 }
 
@@ -90,9 +90,9 @@ double near_zero(double v) {
 std::string facts_of(const AssessedSurface& s, const SurfaceGrid& g) {
   std::string f = fmt::format("{:.2f} × {:.2f} m", s.width, s.height);
   if (std::abs(s.area - s.width * s.height) > 0.005) f += fmt::format(", {:.2f} m²", s.area);
-  if (s.above_floor > 0) f += fmt::format(", {:.2f} m over the floor", s.above_floor);
+  if (s.above_floor > 0) f += fmt::format(", {:.2f} m above the floor", s.above_floor);
   f += fmt::format("; {} points", g.points.size());
-  if (s.border > 0) f += fmt::format(", {:.2f} m off the walls", s.border);
+  if (s.border > 0) f += fmt::format(", {:.2f} m from the walls", s.border);
   return f + fmt::format("; origin at {:.2f}, {:.2f}, {:.2f}", near_zero(s.corner.x),
                          near_zero(s.corner.y), near_zero(s.corner.z));
 }
@@ -145,8 +145,8 @@ std::string surfaces(const Report& r) {
   const Assessment& a = r.assessment;
   const Scales scales = scales_of(a);
   std::string h =
-      "<h2>Surfaces</h2>\n<p class=\"sub\">Values at the grid's points, and isolux lines. All "
-      "drawings of one quantity share its scale.</p>\n";
+      "<h2>Surfaces</h2>\n<p class=\"sub\">Values at the grid points, and isolux lines. All "
+      "drawings of a quantity use the same scale.</p>\n";
   if (a.has_electric)
     h += figure(scale_legend(scales.electric, "lx", full_width), "Electric light, maintained");
   if (a.has_daylight) h += figure(scale_legend(scales.daylight, "lx", full_width), "Daylight");
@@ -156,11 +156,10 @@ std::string surfaces(const Report& r) {
   h += "</div>\n";
   const std::string parts = contributions_table(a);
   if (!parts.empty())
-    h +=
-        "<h2>Contributions</h2>\n<p class=\"sub\">Mean maintained illuminance by each luminaire or "
-        "family alone, lx. Their sum and the mean of all together agree within their "
-        "uncertainty.</p>\n" +
-        parts;
+    h += "<h2>Contributions</h2>\n<p class=\"sub\">Mean maintained illuminance from each luminaire "
+         "or group of luminaires alone, lx. The sum agrees with the mean for all luminaires "
+         "together within the uncertainty.</p>\n" +
+         parts;
   return h;
 }
 
@@ -194,7 +193,7 @@ std::string type_block(const Assessment& a, size_t type, size_t first,
     text += ", power unknown";
   if (l.watts && *l.watts > 0)
     text += fmt::format("<br>{} lm/W", short_number(l.lumens / *l.watts));
-  text += fmt::format("<br>{} cd at most", short_number(l.curve.largest()));
+  text += fmt::format("<br>{} cd maximum", short_number(l.curve.largest()));
   return "<div class=\"type\">" + polar_plot(l.curve, l.product, side) + "<p>" + text +
          "</p></div>\n";
 }
@@ -206,8 +205,8 @@ std::string luminaires(const Report& r) {
     constexpr size_t most = 12;
     std::vector<size_t> firsts;
     const std::vector<size_t> types = types_of(a.luminaires, firsts);
-    h += "<p class=\"sub\">Polar curves: C0–C180 solid, C90–C270 dashed, the aim downwards.</p>\n"
-         "<div class=\"types\">\n";
+    h += "<p class=\"sub\">Polar curves: C0–C180 solid, C90–C270 dashed; the aim points "
+         "down.</p>\n<div class=\"types\">\n";
     for (size_t t = 0; t < std::min(firsts.size(), most); ++t)
       h += type_block(a, t, firsts[t], types);
     h += "</div>\n" + luminaires_table(a, r.options.up, types);
@@ -224,15 +223,15 @@ std::string glare_section(const Assessment& a) {
     for (const SeenLuminaire& l : g.glare.luminaires) is_small = is_small || l.is_small;
   }
   std::string h =
-      "<h2>Glare</h2>\n<p class=\"sub\">UGR after CIE 117: the worst observer of each surface, and "
-      "the ratings of its others.</p>\n" +
+      "<h2>Glare</h2>\n<p class=\"sub\">UGR according to CIE 117: the worst observer of each "
+      "surface, and the ratings for its other observers.</p>\n" +
       glare_table(a);
   if (is_large)
-    h += "<p class=\"sub\">* A luminaire takes more than 0.1 sr of the view: the formula does not "
-         "hold for it.</p>\n";
+    h += "<p class=\"sub\">* A luminaire fills more than 0.1 sr of the view: the formula is not "
+         "valid for it.</p>\n";
   if (is_small)
-    h += "<p class=\"sub\">Luminaires of which less than 0.005 m² are seen count as if they were "
-         "that large (CIE 147).</p>\n";
+    h += "<p class=\"sub\">Luminaires with a visible area below 0.005 m² are rated as if they had "
+         "that area (CIE 147).</p>\n";
   return h;
 }
 
@@ -240,7 +239,7 @@ std::string cylinders(const Assessment& a) {
   if (a.cylinders.empty()) return {};
   return fmt::format(
              "<h2>Cylindrical illuminance</h2>\n<p class=\"sub\">Maintained, at eye height: the "
-             "mean over {} vertical planes all around.</p>\n",
+             "mean over {} vertical planes in all directions.</p>\n",
              cylinder_planes) +
          cylinder_table(a);
 }
@@ -253,13 +252,13 @@ std::string picture_section(const std::vector<ReportPicture>& pictures) {
       return fmt::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">", what, base64(png));
     };
     const std::string camera = p.name.empty() ? "" : ", camera " + html_name(p.name);
-    h += figure(image(p.seen, "the room as it is seen"), "The room as it is seen" + camera + ".",
-                "picture") +
-         figure(image(p.luminances, "luminances as false colours") +
+    h += figure(image(p.seen, "the room as seen by the camera"),
+                "The room as seen by the camera" + camera + ".", "picture") +
+         figure(image(p.luminances, "luminances in false colours") +
                     factor_legend(p.scale.least, p.scale.largest, "cd/m²", full_width),
                 fmt::format("Initial luminances{}; mean {} cd/m²{}.", camera, short_number(p.mean),
                             p.estimated_error > 0
-                                ? fmt::format(", uncertainty of a pixel {:.1f} % of that",
+                                ? fmt::format(", standard error of a pixel {:.1f} % of it",
                                               100 * p.estimated_error)
                                 : ""),
                 "picture");
@@ -278,13 +277,12 @@ std::string appendix(const Report& r) {
   std::vector<std::string> notes = r.assessment.notes;
   for (const std::string& w : r.info.warnings) notes.push_back("warning: " + w);
   return "<h2>Appendix</h2>\n" + list_of(notes) +
-         "<p class=\"sub\">Grids follow EN 12464-1. Floor area is that within the walls; furniture "
-         "counts as floor. ± is one standard error. A requirement is undecided where the value "
-         "lies within two standard errors of it. The error of a mean is the mean of its points' "
-         "errors, an upper bound. The minimum of noisy values lies below the minimum of exact "
-         "ones, "
-         "by about the bias below; figures are not corrected for it. All points are in points.csv, "
-         "all figures and observers in report.json.</p>\n" +
+         "<p class=\"sub\">Grids follow EN 12464-1. Floor area is the area within the walls; "
+         "furniture counts as floor. ± is one standard error. A requirement is undecided if the "
+         "value lies within two standard errors of it. The error of a mean is the mean of its "
+         "points' errors, which is an upper bound. The minimum of noisy values lies below the "
+         "minimum of exact values, by about the bias below; figures are not corrected for it. All "
+         "points are in points.csv, all figures and observers in report.json.</p>\n" +
          bias_table(r.assessment) + info_tables(r.info);
 }
 

@@ -151,7 +151,7 @@ Scene with_joined_lights(Scene scene) {
     if (first[i] == i) continue;
     is_gone[i] = 1;
     scene.lights[first[i]].radiance += scene.lights[i].radiance;
-    scene.warnings.add("lights that lie exactly in each other's place shine as one");
+    scene.warnings.add("lights in exactly the same place are joined into one");
   }
   if (std::find(is_gone.begin(), is_gone.end(), 1) == is_gone.end()) return scene;
   remove_lights(scene, is_gone);

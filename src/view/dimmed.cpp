@@ -22,7 +22,7 @@ DimmerSettings parse_dimmers(const std::string& text, size_t count) {
       const bool is_last = i + 1 == count && c == 2;
       const char after = c < 2 ? ',' : is_last ? '\0' : ';';
       if (end == p || *end != after || !(v >= 0 && v <= most))
-        throw UsageError("dimmers: three factors for each are needed");
+        throw UsageError("dimmers: each needs three factors");
       settings[i][c] = v;
       p = end + (is_last ? 0 : 1);
     }
@@ -49,14 +49,14 @@ Image dimmed_picture(const LayerBoard& board, const DimmerSettings& settings) {
   for (size_t i = 0; i < settings.size(); ++i) {
     const auto layer = board.get("dimmer" + std::to_string(i));
     if (!layer || (i > 0 && layer->view != view))
-      throw UsageError("the pictures by single luminaires are not there yet");
+      throw UsageError("the pictures of single luminaires are not ready yet");
     const Image& from = layer->image;
     if (i == 0) {
       sum = Image(from.width, from.height);
       view = layer->view;
     }
     if (from.width != sum.width || from.height != sum.height)
-      throw UsageError("the pictures by single luminaires are not all there yet");
+      throw UsageError("the pictures of single luminaires are not all ready yet");
     for (size_t k = 0; k < sum.pixels.size(); ++k) sum.pixels[k] += from.pixels[k] * settings[i];
   }
   return sum;

@@ -162,7 +162,7 @@ HttpResponse HttpServer::Parts::check(MHD_Connection* c, const char* url, std::s
   // libmicrohttpd answers HEAD with the headers of GET.
   if (!e.request.is_post && method != MHD_HTTP_METHOD_GET && method != MHD_HTTP_METHOD_HEAD)
     return refusal(405, "GET, HEAD or POST");
-  if (has_two_lengths(c)) return refusal(400, "the length is told twice");
+  if (has_two_lengths(c)) return refusal(400, "the length is given twice");
   const std::string_view length = header(c, MHD_HTTP_HEADER_CONTENT_LENGTH);
   if (!length.empty() && std::strtoull(length.data(), nullptr, 10) > limits.body_bytes)
     return refusal(413, "too large");

@@ -69,7 +69,7 @@ Camera camera_of_json(const nlohmann::json& object, const Camera& base, const Ve
   constexpr float shortest = 1e-6f;  // squares of much shorter vectors lose digits
   if (!(std::min(length(forward), length(up)) >= shortest) ||
       !(length(side) > 1e-6f * length(forward) * length(up)))
-    throw UsageError("forward and up must have a length, and differ");
+    throw UsageError("forward and up must have a length and different directions");
   c.forward = normalize(forward);
   c.right = normalize(side) * hand_of(base);
   c.up = cross(normalize(side), c.forward);

@@ -34,14 +34,14 @@ MeasuringGrid grid_between(const MeasuringPoint& first, const Vec3d& second, con
   const double longer = std::max(grid.width, grid.depth);
   if (!(std::min(grid.width, grid.depth) > 1e-3 * longer) || !std::isfinite(longer))
     throw UsageError("a grid needs two opposite corners of a rectangle");
-  if (along < 1 || along > 1000) throw UsageError("a grid has between 1 and 1000 fields a side");
+  if (along < 1 || along > 1000) throw UsageError("a grid must have 1 to 1000 fields per side");
   const auto fields = [&](double side) {
     return std::max(1, int(std::lround(along * side / longer)));
   };
   grid.columns = fields(grid.width);
   grid.rows = fields(grid.depth);
   if (size_t(grid.columns) * size_t(grid.rows) > most_measuring_points)
-    throw UsageError("a grid of more points than can be measured at a time");
+    throw UsageError("the grid has more points than can be measured at a time");
   for (int j = 0; j < grid.rows; ++j)
     for (int i = 0; i < grid.columns; ++i)
       grid.points.push_back(

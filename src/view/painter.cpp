@@ -121,7 +121,7 @@ void Painter::paint(const Orders& orders) {
   view_ = orders.view;
   begun_ = orders.asked;
   lighting_ = orders.request.lighting;
-  tell("Drawing a first picture", 0);
+  tell("Rendering a first picture", 0);
   sight(orders);
   add_works(orders);
   const bool is_dimmed = orders.extras.is_dimmed();
@@ -336,10 +336,10 @@ void Painter::put(const Orders& orders, const Work& work, const Image& image, do
 std::string Painter::stage_of(const Work& work) const {
   const std::string pass = fmt::format("step {} of {}", work.next + 1, work.passes.size());
   if (work.dimmer >= 0)
-    return fmt::format("Rendering {} by itself, {}", lighting_->dimmers()[size_t(work.dimmer)].name,
+    return fmt::format("Rendering {} alone, {}", lighting_->dimmers()[size_t(work.dimmer)].name,
                        pass);
   if (work.layer == "second")
-    return fmt::format("Rendering by {}, {}", work.method.row().name, pass);
+    return fmt::format("Rendering with {}, {}", work.method.row().name, pass);
   return "Refining, " + pass;
 }
 

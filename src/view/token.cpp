@@ -13,7 +13,7 @@ namespace troffer {
 std::string random_token() {
   std::array<uint8_t, 16> bytes;
   if (getrandom(bytes.data(), bytes.size(), 0) != ptrdiff_t(bytes.size()))
-    throw EnvironmentError("the system has no random numbers for the page's address");
+    throw EnvironmentError("the system provides no random numbers for the page's address");
   std::string token;
   for (const uint8_t b : bytes)
     for (const int digit : {b >> 4, b & 15}) token += "0123456789abcdef"[digit];

@@ -205,7 +205,7 @@ HttpResponse ViewService::picture(const HttpRequest& r) const {
 
 HttpResponse ViewService::measured(const HttpRequest& r, bool is_csv) const {
   const auto a = desk_.answer(number_of(r, "number"));
-  if (!a) throw UsageError("nothing was measured under that number");
+  if (!a) throw UsageError("there is no measurement with that number");
   if (is_csv) {
     const DimmerSettings dimmers =
         parse_dimmers(value_of(r, "dimmers"), a->task.lighting->dimmers().size());
@@ -271,7 +271,7 @@ MeasuringPoint ViewService::point_at(double x, double y, std::string* name) cons
   const ViewRequest now = painter_.request();
   const auto seen = point_seen(*lighting_->whole(), now.camera, now.size.width, now.size.height,
                                {float(x * now.size.width), float(y * now.size.height)});
-  if (!seen) throw UsageError("nothing is there");
+  if (!seen) throw UsageError("there is no surface at that place");
   if (name != nullptr) *name = seen->name;
   return seen->point;
 }
@@ -311,7 +311,7 @@ HttpResponse ViewService::grid(const std::string& body) {
 HttpResponse ViewService::measure_again(const std::string& body) {
   const json j = parse_object(body);
   const auto a = desk_.answer(uint64_t(number_in(j, "number", 0, 1e15)));
-  if (!a) throw UsageError("nothing was measured under that number");
+  if (!a) throw UsageError("there is no measurement with that number");
   return begin_measuring({lighting_, a->task.points, painter_.extras().is_dimmed()},
                          json::object());
 }

@@ -69,7 +69,7 @@ TEST_CASE("a slab of glass absorbs by its thickness, a pane as well") {
     }
 }
 
-TEST_CASE("a pane absorbs more of light that leans, by every method") {
+TEST_CASE("a pane absorbs more of oblique light, by every method") {
   // One light over a pane 1 m above the floor: straight above, and 60 degrees off.
   const std::string scene =
       "WorldBegin\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
@@ -106,7 +106,7 @@ TEST_CASE("a pane absorbs more of light that leans, by every method") {
   }
 }
 
-TEST_CASE("a far checkered floor has its mean at one viewing ray") {
+TEST_CASE("one viewing ray shows the mean of a distant checkered floor") {
   const std::string scene =
       "LookAt 0 0 50  0 300 0  0 0 1\nCamera \"perspective\" \"float fov\" 10\nWorldBegin\n"
       "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
@@ -129,7 +129,7 @@ TEST_CASE("a far checkered floor has its mean at one viewing ray") {
 
 // Rows of black and white, of holes and white, and of dark and bright emission. Nearby they are as
 // wide as a pixel, further away narrower.
-TEST_CASE("half as many pixels see the same mean of textures, masks and shining textures") {
+TEST_CASE("textures, masks and emissive textures keep their mean at half the resolution") {
   const std::string look =
       "LookAt 0 -4 6  0 4 0  0 0 1\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n";
   const std::string floor =
@@ -182,7 +182,9 @@ TEST_CASE("half as many pixels see the same mean of textures, masks and shining 
     }
 }
 
-TEST_CASE("backs: black in Mitsuba's files, unseen in glTF's but there for light") {
+TEST_CASE(
+    "back sides: black in Mitsuba's files; in glTF's files invisible to the camera but present for "
+    "light") {
   const auto panel = [](const std::string& bsdf) {
     return "<scene version='3.0.0'><sensor type='perspective'><float name='fov' value='5'/>"
            "<transform name='to_world'><lookat origin='0,0,-5' target='0,0,0' up='0,1,0'/>"

@@ -39,7 +39,7 @@ TEST_CASE("bake writes the scene with its light, the same for any number of thre
   CHECK(read_file(folder.path("a_files/light0.exr")) == page);
 }
 
-TEST_CASE("bake has one kind of result at a time, in pages as fine as asked for") {
+TEST_CASE("bake writes one kind of result at a time, with the requested texel size") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   for (const char* kind : {"--unlit", "--emissive", "--vertex-colours"}) {

@@ -89,7 +89,7 @@ std::string black_room(bool has_roof) {
 
 }  // namespace
 
-TEST_CASE("CIE 171, 5.2: a point source, even and by its file") {
+TEST_CASE("CIE 171, 5.2: a point source, uniform and with its photometric file") {
   constexpr double candela = 800;
   const Vec3d lamp{0, 0, 2.9};
   const std::string world =
@@ -157,7 +157,7 @@ struct InnerFlux {
 
 }  // namespace
 
-TEST_CASE("CIE 171, 5.4: what enters by an opening arrives within") {
+TEST_CASE("CIE 171, 5.4: the light that enters through an opening arrives inside") {
   Room room;
   const std::string world = pbrt_rectangles(room.walls(), 0);
   const InnerFlux inner;
@@ -185,7 +185,7 @@ TEST_CASE("CIE 171, 5.5: the directional transmittance of clear glass") {
        expected);
 }
 
-TEST_CASE("CIE 171, 5.6 and 5.7: light off a diffuse square, and past an obstruction") {
+TEST_CASE("CIE 171, 5.6 and 5.7: light reflected by a diffuse square, and past an obstruction") {
   // A vertical beam hits the square y in [0, size]. Vertical and downward-facing points above its
   // edge see only the light that it reflects.
   constexpr double lx = 10'000, reflectance = 0.3;
@@ -229,7 +229,7 @@ TEST_CASE("CIE 171, 5.6 and 5.7: light off a diffuse square, and past an obstruc
        expected);
 }
 
-TEST_CASE("CIE 171, 5.8: light that a closed room reflects to and fro") {
+TEST_CASE("CIE 171, 5.8: interreflections in a closed room") {
   // A cube of 4 m with one reflectance and a point light in its middle. By symmetry each face gets
   // a sixth of the flux, and each sixth of a face an equal part.
   constexpr double candela = 800;

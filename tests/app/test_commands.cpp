@@ -58,7 +58,7 @@ TEST_CASE("all four formats in one run hold the same picture") {
   CHECK(mean(png) > 0.01);
 }
 
-TEST_CASE("the same bytes for any number of threads, and twice") {
+TEST_CASE("output is byte-identical for any number of threads and in repeated runs") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   for (const std::vector<std::string>& method : std::vector<std::vector<std::string>>{
@@ -124,7 +124,7 @@ TEST_CASE("--stats holds every key") {
   CHECK(s["peak_memory_mb"].get<double>() > 1);
 }
 
-TEST_CASE("--stats counts the viewing rays that the picture took, and no others") {
+TEST_CASE("--stats counts exactly the viewing rays of the picture") {
   const Folder folder;
   // The picture shows a single radiance, so no pixel is refined.
   const std::string scene = folder.write("lamp.pbrt", R"(LookAt 0 0 0  0 0 1  0 1 0
@@ -142,7 +142,7 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
   CHECK(mean(read_image(folder.path("o.exr"))) == doctest::Approx(5));
 }
 
-TEST_CASE("info tells what is there") {
+TEST_CASE("info lists what the scene holds") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   const Json j = Json::parse(run_well(folder, {"info", scene, "--json"}).out);
@@ -272,7 +272,7 @@ TEST_CASE("measure: the header, the values, the errors") {
   }
 }
 
-TEST_CASE("scenes without surfaces and lights are refused; info tells what they hold") {
+TEST_CASE("scenes without surfaces and lights are refused; info lists what they hold") {
   const struct {
     const char *name, *text;
   } empty[] = {
@@ -291,7 +291,7 @@ TEST_CASE("scenes without surfaces and lights are refused; info tells what they 
   }
 }
 
-TEST_CASE("scenes without light or camera: a warning, and no light of a sky but where asked") {
+TEST_CASE("scenes without light or camera: a warning, and no sky unless requested") {
   const struct {
     const char *name, *text;
   } odd[] = {

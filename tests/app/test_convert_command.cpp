@@ -162,7 +162,7 @@ TEST_CASE("colours of vertices keep their brightness") {
   check_near(lux(folder, baked(folder, sample("colours.gltf")), points, options), wanted, 0.02);
 }
 
-TEST_CASE("images of emission lie in pbrt as they did") {
+TEST_CASE("emission images keep their placement in pbrt") {
   const Folder folder;
   const std::string points = folder.write("p.csv", read_file(sample("screen.csv")));
   check_near(lux(folder, converted(folder, sample("screen.gltf"), "out.pbrt"), points),
@@ -174,7 +174,7 @@ TEST_CASE("images of emission lie in pbrt as they did") {
   }
 }
 
-TEST_CASE("normal maps lean in pbrt as they did") {
+TEST_CASE("normal maps keep their tilt in pbrt") {
   const Folder folder;
   const std::map<std::string, std::array<float, 4>> wanted{
       {"x-tilt-top.gltf", {0.578f, 0.578f, 0.475f, 0.475f}},
@@ -196,7 +196,7 @@ TEST_CASE("normal maps lean in pbrt as they did") {
   }
 }
 
-TEST_CASE("scenes whose z is up stand upright in glTF") {
+TEST_CASE("scenes with z up are upright in glTF") {
   const Folder folder;
   // A floor of 10 × 10 m under an overcast sky of 10 000 lx.
   const std::string scene = folder.write(

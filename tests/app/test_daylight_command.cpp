@@ -54,7 +54,7 @@ TEST_CASE("a sun beside an image of the surroundings brings no sky and no ground
   }
 }
 
-TEST_CASE("skies and suns bring to an open plain what is asked for") {
+TEST_CASE("skies and suns give an open plane the requested illuminance") {
   const Folder folder;
   struct Case {
     std::vector<std::string> options;
@@ -131,7 +131,7 @@ TEST_CASE("an image of the surroundings: scale, rotation, and what cannot be rea
   CHECK(f.error_lines().size() == 1);
 }
 
-TEST_CASE("options of daylight that make no sense are told") {
+TEST_CASE("senseless daylight options are reported") {
   const Folder folder;
   const std::string scene = folder.write("plain.obj", plain_obj),
                     points = folder.write("p.csv", one_point);
@@ -184,8 +184,8 @@ TEST_CASE("a scene without light and camera is lit, framed and exposed, and says
   const Finished f = run_program(folder, plain);
   REQUIRE(f.status == 0);
   CHECK(contains(f.err, "no light"));
-  CHECK(contains(f.err, "even sky"));
-  CHECK(contains(f.err, "before it"));
+  CHECK(contains(f.err, "uniform sky"));
+  CHECK(contains(f.err, "in front of it"));
   CHECK(contains(f.err, "exposed by"));
   double mean = 0;
   for (const Rgb& p : read_image(png).pixels) mean += double(luminance(p)) / (40 * 30);
@@ -205,7 +205,7 @@ TEST_CASE("a scene without light and camera is lit, framed and exposed, and says
   CHECK(contains(run_program(folder, night).err, "below the horizon"));
 }
 
-TEST_CASE("warnings tell of a hidden sun and of options without effect, and of no lack of light") {
+TEST_CASE("warnings report a hidden sun and options without effect, but no missing light") {
   const Folder folder;
   const std::string scene = folder.write("plain.obj", plain_obj),
                     points = folder.write("p.csv", one_point);
@@ -230,7 +230,7 @@ TEST_CASE("warnings tell of a hidden sun and of options without effect, and of n
   CHECK(contains(dark, "there is no light"));
 }
 
-TEST_CASE("kj92 tells of the sky that it misses through openings, and of no other") {
+TEST_CASE("kj92 warns of the sky light that it misses through openings, and of nothing else") {
   const Folder folder;
   // A box with one open side, seen from inside.
   const std::string room = folder.write(
@@ -250,7 +250,7 @@ TEST_CASE("kj92 tells of the sky that it misses through openings, and of no othe
   CHECK_FALSE(warns({"--sky", "overcast"}, folder.write("plain.obj", plain_obj)));
 }
 
-TEST_CASE("turbid air takes of the sun and adds to the sky") {
+TEST_CASE("turbid air dims the sun and brightens the sky") {
   const Folder folder;
   folder.write("plain.obj", plain_obj);
   folder.write("p.csv", one_point);
@@ -307,7 +307,7 @@ TEST_CASE("weather files: line ends, byte order marks, rows of a quarter, instru
   CHECK(status("12x") == 1);
 }
 
-TEST_CASE("at dusk a sky shines that is as bright as was asked, wherever the sun stands") {
+TEST_CASE("at dusk a sky has the requested brightness, wherever the sun is") {
   const Folder folder;
   CHECK(measure(folder, {"--sky", "overcast,80", "--sun", "270,-3"}).lx ==
         doctest::Approx(measure(folder, {"--sky", "overcast,80"}).lx));
@@ -319,7 +319,7 @@ TEST_CASE("at dusk a sky shines that is as bright as was asked, wherever the sun
   CHECK(contains(f.err, "the sun is 0.00 degrees"));
 }
 
-TEST_CASE("an hour of a weather file is Perez' sky with the sun of that place and time") {
+TEST_CASE("an hour of a weather file gives the Perez sky and the sun of that place and time") {
   const Folder folder;
   std::string epw =
       "LOCATION,Wien,-,AUT,none,110350,48.2,16.4,1.0,203.0\n"

@@ -61,7 +61,7 @@ TEST_CASE("broken scenes: file, line and column, exit 1, no output") {
   }
 }
 
-TEST_CASE("files that are not there, and folders in place of files") {
+TEST_CASE("missing files, and folders instead of files") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   const std::string out = folder.path("o.exr");
@@ -80,7 +80,7 @@ TEST_CASE("files that are not there, and folders in place of files") {
         std::vector<std::string>{"folder.pbrt", "pipe.obj", "room.pbrt", "scene.xyz"});
 }
 
-TEST_CASE("outputs that cannot be written are told before any work, and leave nothing") {
+TEST_CASE("outputs that cannot be written are reported before any work and leave nothing behind") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   std::filesystem::create_directory(folder.path("taken.png"));
@@ -120,7 +120,7 @@ TEST_CASE("a full disk") {
   }
 }
 
-TEST_CASE("a folder in which nothing may be written") {
+TEST_CASE("a read-only folder") {
   if (geteuid() == 0) return;  // root can write anywhere
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
@@ -226,7 +226,7 @@ TEST_CASE("point lists that cannot be read name line and column") {
   CHECK(folder.names() == std::vector<std::string>{"points.csv", "room.pbrt"});
 }
 
-TEST_CASE("cameras beyond measure are refused, not rendered") {
+TEST_CASE("cameras out of range are refused") {
   const Folder folder;
   const std::string text = lit_floor_pbrt;
   const std::string body = text.substr(text.find("WorldBegin"));

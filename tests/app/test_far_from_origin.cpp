@@ -148,7 +148,7 @@ TEST_CASE("a scene moved by kilometres gives the same picture, in every format a
     }
 }
 
-TEST_CASE("12 mm under a light, 5 km from the origin, a plate is opaque") {
+TEST_CASE("a plate 12 mm below a light is opaque 5 km from the origin") {
   const Folder folder;
   const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n5000,5000,2.45,0,0,1\n");
   const std::string scene = pbrt_scene(folder, {5000, 5000, 0});
@@ -189,7 +189,7 @@ TEST_CASE("the position AOV and info's bounds are in the file's coordinates") {
   }
 }
 
-TEST_CASE("measured points are the file's, and are repeated as given") {
+TEST_CASE("measured points use the file's coordinates and are printed as given") {
   const Folder folder;
   const auto measured = [&](const Vec3d& offset) {
     std::string points = "x,y,z,nx,ny,nz\n";

@@ -111,12 +111,16 @@ void check_agreement(const std::vector<std::string>& light, const Place& place =
 
 }  // namespace
 
-TEST_CASE("sky and sun through a pane and slats: a high sun, one at the horizon, one in the wall") {
+TEST_CASE(
+    "sky and sun through a pane and slats: the sun high, at the horizon, and in the plane of the "
+    "wall") {
   for (const char* sun : {"92,30", "90,0.2", "0,40"})
     check_agreement({"--sky", "clear", "--sun", sun});
 }
 
-TEST_CASE("the same room of any size and far away, by any number of threads") {
+TEST_CASE(
+    "a room gives the same picture at any scale, far from the origin, and for any number of "
+    "threads") {
   const std::vector<std::string> light{"--sky", "clear", "--sun", "92,30"};
   const auto here = measure({}, with(light, {"--threads", "1"}));
   const auto again = measure({}, with(light, {"--threads", "2"}));
@@ -135,7 +139,8 @@ TEST_CASE("the same room of any size and far away, by any number of threads") {
   check_agreement(light, {1, {10240, -10240, 0}});
 }
 
-TEST_CASE("an image with all its light in one pixel sends it through the window") {
+TEST_CASE(
+    "an environment image with all its light in one pixel lights the room through the window") {
   const Folder folder;
   // East is in the middle of a row; the pixel is 30 degrees high.
   std::string pfm = "PF\n128 64\n-1\n";

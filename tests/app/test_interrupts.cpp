@@ -10,7 +10,7 @@
 using namespace troffer;
 using namespace troffer::test;
 
-TEST_CASE("SIGINT and SIGTERM stop a long render, which writes what it has") {
+TEST_CASE("SIGINT and SIGTERM stop a long render, which writes its unfinished picture") {
   for (const int which : {SIGINT, SIGTERM})
     for (const std::string method : {"certified", "path", "fixed"}) {
       const Folder folder;
@@ -32,7 +32,7 @@ TEST_CASE("SIGINT and SIGTERM stop a long render, which writes what it has") {
     }
 }
 
-TEST_CASE("a signal stops measuring, within one point too") {
+TEST_CASE("a signal stops measuring, even within one point") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n1,0,0,0,0,1\n");
@@ -48,7 +48,7 @@ TEST_CASE("a signal stops measuring, within one point too") {
   CHECK(folder.names() == std::vector<std::string>{"p.csv", "room.pbrt"});
 }
 
-TEST_CASE("many sources and many shadow rays: still stopped within seconds") {
+TEST_CASE("a render with many sources and shadow rays stops within seconds") {
   const Folder folder;
   std::string text = lit_floor_pbrt;
   for (int i = 0; i < 2000; ++i)
@@ -66,7 +66,7 @@ TEST_CASE("many sources and many shadow rays: still stopped within seconds") {
   CHECK(f.seconds_after_signal < 5);
 }
 
-TEST_CASE("programs that write the same file do not clash") {
+TEST_CASE("concurrent programs that write the same file do not clash") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt), out = folder.path("o.exr");
   std::vector<std::unique_ptr<Running>> programs;
@@ -82,7 +82,7 @@ TEST_CASE("programs that write the same file do not clash") {
   CHECK(read_image(out).width == 40);
 }
 
-TEST_CASE("an output that was there is replaced only by a whole one") {
+TEST_CASE("an existing output is only replaced by a complete one") {
   const Folder folder;
   const std::string good = folder.write("good.pbrt", lit_floor_pbrt);
   const std::string bad = folder.write("bad.pbrt", "WorldBegin\nShape");

@@ -64,7 +64,7 @@ void kill_again_and_again(const std::vector<std::string>& options, int kills, st
 
 }  // namespace
 
-TEST_CASE("kill -9 at random moments leaves checkpoint and output whole, by every method") {
+TEST_CASE("kill -9 at random moments leaves checkpoint and output intact, by every method") {
   const char* asked = std::getenv("TROFFER_KILLS");
   const int kills = asked != nullptr ? std::atoi(asked) : 12;
   REQUIRE(kills >= 4);

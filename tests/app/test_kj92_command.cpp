@@ -29,7 +29,7 @@ std::vector<std::string> render_of(const Folder& folder, const std::string& scen
 
 }  // namespace
 
-TEST_CASE("kj92: every option is understood") {
+TEST_CASE("kj92: every option is accepted") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   REQUIRE(run_program(folder, {"radiosity", scene, "-o", folder.path("a.trad"), "--element-size",
@@ -103,7 +103,7 @@ TEST_CASE("kj92: wrong values are usage errors, in one line") {
   }
 }
 
-TEST_CASE("kj92: a solution that is not this scene's is refused in one line") {
+TEST_CASE("kj92: a solution of another scene is refused in one line") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   std::string text = lit_floor_pbrt;
@@ -128,7 +128,7 @@ TEST_CASE("kj92: a solution that is not this scene's is refused in one line") {
   CHECK(read_image(folder.path("o.exr")).pixels == loaded.pixels);
 }
 
-TEST_CASE("kj92: statistics tell the time of the preprocessing; sources are a layer") {
+TEST_CASE("kj92: statistics hold the preprocessing time; 'sources' is a layer") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   const Finished f = run_program(
@@ -160,7 +160,7 @@ TEST_CASE("kj92: measure, with and without a solution") {
   CHECK(troffer::test::read_file(folder.path("o.csv")) == first);
 }
 
-TEST_CASE("kj92: SIGINT during rendering leaves a picture, during radiosity nothing") {
+TEST_CASE("kj92: SIGINT leaves a picture during rendering and nothing during radiosity") {
   for (const bool is_during_radiosity : {true, false})
     for (const int which : {SIGINT, SIGTERM}) {
       const Folder folder;

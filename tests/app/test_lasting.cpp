@@ -46,7 +46,7 @@ void check_refused(const Finished& f, int status, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("a time limit ends a render with a whole picture, says so, and is no failure") {
+TEST_CASE("a time limit ends a render with a complete picture, a message and exit status 0") {
   for (const std::string method : {"certified", "path"}) {
     const Folder folder;
     const std::string scene = folder.write("room.pbrt", bright_room_pbrt());
@@ -56,7 +56,7 @@ TEST_CASE("a time limit ends a render with a whole picture, says so, and is no f
                              folder.path("s.json"), "--aov", "error", "--quiet"});
     CAPTURE(f.err);
     CHECK(f.status == 0);
-    CHECK(contains(f.err, "time limit: wrote the picture as it was after"));
+    CHECK(contains(f.err, "time limit: wrote the picture after"));
     CHECK(contains(read_file(folder.path("s.json")), "\"ended_by\": \"time_limit\""));
     const LayeredImage image = read_layers(folder.path("o.exr"));
     CHECK(black_pixels(image.layers[0].image) == 0);
@@ -65,7 +65,7 @@ TEST_CASE("a time limit ends a render with a whole picture, says so, and is no f
   }
 }
 
-TEST_CASE("stopped, and gone on with: the bytes of an uninterrupted run") {
+TEST_CASE("a resumed run has the same bytes as an uninterrupted one") {
   for (const std::string method : {"path", "certified"})
     for (const int which : {SIGINT, SIGTERM}) {
       const Folder folder;
@@ -92,7 +92,7 @@ TEST_CASE("stopped, and gone on with: the bytes of an uninterrupted run") {
     }
 }
 
-TEST_CASE("checkpoints that cannot be gone on from, and those that would be lost") {
+TEST_CASE("checkpoints that cannot be resumed, or would be overwritten, are refused") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt),
                     checkpoint = folder.path("c.chk");
@@ -105,7 +105,8 @@ TEST_CASE("checkpoints that cannot be gone on from, and those that would be lost
   const std::string bytes = read_file(checkpoint);
   REQUIRE(!bytes.empty());
   std::filesystem::remove(folder.path("o.pfm"));
-  check_refused(run_program(folder, kept + Words{"--spp", "1000000"}), 1, "--resume goes on");
+  check_refused(run_program(folder, kept + Words{"--spp", "1000000"}), 1,
+                "continue from it with --resume");
   check_refused(run_program(folder, kept + Words{"--resume", "--spp", "999999"}), 1,
                 "other options");
   check_refused(
@@ -120,14 +121,14 @@ TEST_CASE("checkpoints that cannot be gone on from, and those that would be lost
   CHECK(read_file(checkpoint) == "mine");
   check_refused(run_program(folder, {"render", scene, "-o", folder.path("o.pfm"), "--checkpoint",
                                      "/dev/null", "--resume"}),
-                2, "plain file");
+                2, "regular file");
   check_refused(run_program(folder, {"render", scene, "-o", folder.path("o.pfm"), "--checkpoint",
                                      folder.path("no/c.chk")}),
                 1, "cannot write");
   CHECK(folder.names() == Words{"c.chk", "room.pbrt"});
 }
 
-TEST_CASE("shares are joined to the bytes of one run, in every format") {
+TEST_CASE("merged parts have the same bytes as a single run, in every format") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", bright_room_pbrt());
   for (const std::string method : {"certified", "fixed"})
@@ -155,7 +156,7 @@ TEST_CASE("shares are joined to the bytes of one run, in every format") {
     }
 }
 
-TEST_CASE("shares that do not make up a picture are refused, by a line each") {
+TEST_CASE("parts that do not make up a picture are refused, each with one line") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt), out = folder.path("out.exr");
   const auto part = [&](const std::string& name, const Words& options) {
@@ -200,7 +201,7 @@ TEST_CASE("shares that do not make up a picture are refused, by a line each") {
   CHECK(program.wait().status == 130);
   const std::string long_a =
       part("h.exr", {"--part", "1/2", "--spp", "1000000", "--time-limit", "0.3"});
-  check_refused(merge({b, long_a}), 1, "broken off");
+  check_refused(merge({b, long_a}), 1, "unfinished");
   for (const std::string wrong : {"0/2", "3/2", "1", "1/", "/2", "1/2x", "-1/2", "1/0", "x"})
     check_refused(run_program(folder, {"render", scene, "-o", out, "--part", wrong}), 2, "--part");
   check_refused(run_program(folder, {"render", scene, "-o", out, "--part", "1/100"}), 2, "tiles");
@@ -209,7 +210,7 @@ TEST_CASE("shares that do not make up a picture are refused, by a line each") {
                   "--part");
 }
 
-TEST_CASE("an error limit: told, and told where it is not reached") {
+TEST_CASE("an error limit is reported, and a warning says if it is not reached") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", bright_room_pbrt());
   const auto render = [&](const Words& options) {
@@ -221,11 +222,11 @@ TEST_CASE("an error limit: told, and told where it is not reached") {
   CHECK(contains(read_file(folder.path("s.json")), "\"ended_by\": \"error_limit\""));
   const Finished few = render({"--error-limit", ".01", "--spp", "4"});
   CHECK(few.status == 0);
-  CHECK(contains(few.err, "more than --error-limit"));
+  CHECK(contains(few.err, "above --error-limit"));
   CHECK(contains(read_file(folder.path("s.json")), "\"ended_by\": \"complete\""));
 }
 
-TEST_CASE("a disk too small for checkpoints: told, and the picture is made all the same") {
+TEST_CASE("a disk too small for checkpoints causes a warning, and the picture is finished anyway") {
   const auto limit_files = [] {
     const rlimit limit{64 << 10, 64 << 10};
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -255,7 +256,7 @@ TEST_CASE("a disk too small for checkpoints: told, and the picture is made all t
   }
 }
 
-TEST_CASE("a folder that vanishes under way, and one that nobody may write in") {
+TEST_CASE("a folder that vanishes during the run, and one without write permission") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   std::filesystem::create_directory(folder.path("out"));
@@ -289,7 +290,7 @@ TEST_CASE("a folder that vanishes under way, and one that nobody may write in") 
   CHECK(std::filesystem::is_empty(folder.path("locked")));
 }
 
-TEST_CASE("what killed programs left half-written goes, and nobody else's files") {
+TEST_CASE("half-written files of killed programs are removed, files of others are not") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   const Words names{".troffer-7-0.tmp", ".troffer-8-0.tmp", ".troffer-9-0.tmp", "my.tmp"};

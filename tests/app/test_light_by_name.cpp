@@ -77,7 +77,7 @@ struct NamesTest {
 
 }  // namespace
 
-TEST_CASE("--luminaire takes a wildcard: each light that fits it shines by the file") {
+TEST_CASE("--luminaire accepts a wildcard: each matching light uses the file") {
   NamesTest t;
   const std::vector<std::string> all{"--luminaire", "lamp.*=" + t.lamp};
   CHECK(t.lx("lamp.1", all)[0].lx == doctest::Approx(100 / 4.0).epsilon(1e-4));
@@ -88,12 +88,12 @@ TEST_CASE("--luminaire takes a wildcard: each light that fits it shines by the f
           doctest::Approx(100 / 4.0).epsilon(1e-4));
   const Finished none = t.run({"--luminaire", "desk*=" + t.lamp});
   CHECK(none.status == 2);
-  CHECK(contains(none.err, "no name fits 'desk*'"));
+  CHECK(contains(none.err, "no name matches 'desk*'"));
   // Surfaces that do not emit yet.
   CHECK(t.run({"--luminaire", "flo*=" + t.lamp}).status == 0);
 }
 
-TEST_CASE("--dim scales the light of what it names") {
+TEST_CASE("--dim scales the light of the named sources") {
   NamesTest t;
   const double whole = t.lx("lamp.1", {})[0].lx;
   CHECK(whole == doctest::Approx(10 / 4.0).epsilon(1e-4));
@@ -123,7 +123,7 @@ TEST_CASE("--dim scales the light of what it names") {
     CHECK(t.run({"--dim", bad}).status == 2);
 }
 
-TEST_CASE("--dim scales the power that a report tells") {
+TEST_CASE("--dim scales the power in a report") {
   NamesTest t;
   const auto watts = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words{"report",
@@ -208,7 +208,7 @@ TEST_CASE("--grid lays points over a node's upward surface") {
 }
 
 // glTF-Blender-IO writes emission strength without a factor, and lamps with 683 lm/W.
-TEST_CASE("surfaces that are dim beside lamps are told, and scaled where it is asked") {
+TEST_CASE("surfaces that are dim beside lamps cause a warning, and --emission-scale scales them") {
   NamesTest t;
   // The lamps emit 4 π (10 + 20 + 30) = 754 lm, the panel of .5 m² with 5 cd/m² 7.9 lm to one side.
   CHECK_FALSE(contains(t.run({}).err, "--emission-scale"));  // more than a hundredth of the lamps

@@ -52,7 +52,7 @@ constexpr double expected = 100 / 6.25;  // lx, 2.5 m below a point of 100 cd
 }  // namespace
 
 // RFC 4180, and spreadsheets in countries with a decimal comma.
-TEST_CASE("lists of points and of luminaires take the same forms of a table") {
+TEST_CASE("lists of points and luminaires accept the same table formats") {
   ListsTest t;
   for (const std::string form :
        {"#HEAD#,x,y,z#MORE#\n#ITEM#,1,2,#Z##REST#\n",
@@ -91,7 +91,7 @@ TEST_CASE("lists of points and of luminaires take the same forms of a table") {
   }
 }
 
-TEST_CASE("columns that a list of points does not know are told and passed over") {
+TEST_CASE("unknown columns in a list of points are reported and ignored") {
   ListsTest t;
   // Results of another run are accepted, too.
   const Finished f = t.measure(
@@ -104,7 +104,7 @@ TEST_CASE("columns that a list of points does not know are told and passed over"
   CHECK(lx_of(f.out) == doctest::Approx(expected).epsilon(1e-4));
 }
 
-TEST_CASE("columns that a list of luminaires does not know are told and passed over") {
+TEST_CASE("unknown columns in a list of luminaires are reported and ignored") {
   ListsTest t;
   const Finished f = t.measure("x,y,z,nx,ny,nz\n1,2,0,0,0,1\n",
                                "file,x,y,z,dimmming,colour\nlamp.ies,1,2,2.5,.5,red\n");
@@ -114,7 +114,7 @@ TEST_CASE("columns that a list of luminaires does not know are told and passed o
   CHECK(contains(f.err, "list.csv are not used"));
 }
 
-TEST_CASE("what is wrong in a list of points is told by line and column") {
+TEST_CASE("errors in a list of points name line and column") {
   ListsTest t;
   for (const auto& [points, place] : std::initializer_list<std::pair<std::string, std::string>>{
            {"x,y,z,nx,ny,nz\n", "p.csv"},  // no point
@@ -135,7 +135,7 @@ TEST_CASE("what is wrong in a list of points is told by line and column") {
   }
 }
 
-TEST_CASE("report takes its surfaces from a table as from JSON") {
+TEST_CASE("report reads surfaces from a table as well as from JSON") {
   const Folder folder;
   const std::string scene = folder.write("lit.pbrt", lit_floor_pbrt);
   const auto report = [&](const std::string& name, const std::string& text) {

@@ -78,7 +78,8 @@ TEST_CASE("C angles run counterclockwise seen from above: C90 lies to the left o
 }
 
 TEST_CASE(
-    "a panel that shines by the cosine is a diffuse one; a narrow one as subdivided sums say") {
+    "a panel with a cosine distribution equals a diffuse one; a narrow one agrees with subdivided "
+    "sums") {
   const Folder folder;
   folder.write("panel.obj", geometry);
   const std::string even = folder.write("even.ies", ies(1)),
@@ -115,7 +116,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("info tells what a photometric file says; what is wrong is told in a line") {
+TEST_CASE("info shows the contents of a photometric file; errors take one line") {
   const Folder folder;
   const std::string file = folder.write("even.ies", ies(1));
   const Finished f = run_program(folder, {"info", file, "--json"});
@@ -147,7 +148,7 @@ TEST_CASE("info tells what a photometric file says; what is wrong is told in a l
   }
 }
 
-TEST_CASE("a colour temperature colours a luminaire and leaves its lumens") {
+TEST_CASE("a colour temperature colours a luminaire and keeps its lumens") {
   const Folder folder;
   folder.write("panel.obj", geometry);
   folder.write("m.mtl", panel_obj(1));
@@ -176,7 +177,7 @@ TEST_CASE("a colour temperature colours a luminaire and leaves its lumens") {
               .status == 2);
 }
 
-TEST_CASE("a part of the scene that is given two files is told to shine by the last") {
+TEST_CASE("a node with two photometric files uses the last one, with a warning") {
   const Folder folder;
   folder.write("panel.obj", geometry);
   folder.write("m.mtl", panel_obj(1));
@@ -193,7 +194,7 @@ TEST_CASE("a part of the scene that is given two files is told to shine by the l
   CHECK(f.err.find("'emitter0' is given twice") != std::string::npos);
 }
 
-TEST_CASE("control characters of a file's names do not reach the terminal") {
+TEST_CASE("control characters in a file's names do not reach the terminal") {
   const Folder folder;
   std::string text = ies(1);
   text.insert(text.find("TILT"),
@@ -205,7 +206,7 @@ TEST_CASE("control characters of a file's names do not reach the terminal") {
   CHECK(f.out.find('\x1b') == std::string::npos);
 }
 
-TEST_CASE("a list hangs luminaires: points and openings, turned and dimmed") {
+TEST_CASE("a list places luminaires: points and openings, rotated and dimmed") {
   // cos γ with a plane C90 half as strong as C0.
   const auto oval = [](double width, double length) {
     std::string text = fmt::format("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 91 2 1 2 {} {} 0\n1 1 25\n",
@@ -266,7 +267,7 @@ TEST_CASE("polar curves are drawn; other files and endings are refused") {
   CHECK(run_program(folder, {"info", scene, "--polar", folder.path("c.svg")}).status == 2);
 }
 
-TEST_CASE("points of a radius light what they lit, and their shadows are soft") {
+TEST_CASE("points with a radius light the same surfaces, with soft shadows") {
   const Folder folder;
   folder.write("p.pbrt",
                "WorldBegin\nLightSource \"point\" \"rgb I\" [10 10 10] \"point3 from\" [0 0 2]\n"

@@ -65,8 +65,7 @@ TEST_CASE("lists of luminaires: quotes, separators, decimal commas, columns in a
         doctest::Approx(expected / 2).epsilon(1e-3));
 }
 
-TEST_CASE(
-    "lists of luminaires: what is wrong is told by line, and no file is read from elsewhere") {
+TEST_CASE("lists of luminaires: errors name the line, and no file is read from other folders") {
   ListTest t;
   t.folder.write("outside.ies", point_ies);
   for (const auto& [list, place] : std::initializer_list<std::pair<std::string, std::string>>{
@@ -93,7 +92,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "lumens that do not fit the intensities are told, and beams that are no cosine measured") {
+    "lumens that contradict the intensities cause a warning, and non-cosine beams are measured") {
   const Folder folder;
   const auto info = [&](const std::string& text) {
     const Finished f = run_program(folder, {"info", folder.write("a.ies", text), "--json"});
@@ -117,7 +116,7 @@ TEST_CASE(
   CHECK(up["beam_angle"][0].get<double>() == doctest::Approx(150).epsilon(2e-3));
 }
 
-TEST_CASE("weather files: quoted names, and hours that nobody measured") {
+TEST_CASE("weather files: quoted names and hours without data") {
   const Folder folder;
   const std::string scene = folder.write("floor.obj", "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nf 1 2 3\n");
   const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n1,0,0,0,0,1\n");

@@ -79,7 +79,9 @@ double seen_area(const Surface& surface, const Vec3d& w) {
 
 }  // namespace
 
-TEST_CASE("openings of every shape: the measured light far away, subdivided sums near") {
+TEST_CASE(
+    "openings of every shape give the measured light far away and agree with subdivided sums "
+    "nearby") {
   const Folder folder;
   folder.write("floor.obj", "v -5 -5 -9\nv 5 -5 -9\nv 5 5 -9\nf 1 2 3\n");
   struct Opening {
@@ -139,7 +141,7 @@ TEST_CASE("openings of every shape: the measured light far away, subdivided sums
   }
 }
 
-TEST_CASE("certified: measured openings half hidden are lit as rays have it") {
+TEST_CASE("certified: the light of half-hidden measured openings agrees with rays") {
   const Folder folder;
   // A box with luminous sides, with a board in front of it.
   std::string text = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 181 3 1 2 0.6 1.2 0.1\n1 1 25\n";

@@ -74,7 +74,8 @@ double peak_mb(const Folder& folder, const std::string& scene,
 }  // namespace
 
 TEST_CASE(
-    "the default takes less than 200 bytes for a triangle under lights, 145 where none asks") {
+    "the default method takes less than 200 bytes per triangle under area lights, 145 under a "
+    "point light") {
   constexpr int n = 600, few = 4;
   const std::string lamps =
       "AttributeBegin\nTranslate 0 0 2.5\nAreaLightSource \"diffuse\" \"rgb L\" [12 11 10]\n"
@@ -96,7 +97,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("instances take no memory for their triangles, neither for rays nor for proofs") {
+TEST_CASE("instances take no memory for their triangles, neither for rays nor for certificates") {
   constexpr int n = 370, many = 100;  // enough triangles for the file's objects to be shared
   const Folder folder;
   folder.write("rough.ply", rough_ply(n));
@@ -124,7 +125,7 @@ TEST_CASE("instances take no memory for their triangles, neither for rays nor fo
 }
 
 // Large pages reserve addresses.
-TEST_CASE("few addresses are enough") {
+TEST_CASE("a small address space is enough") {
 #if !defined(__SANITIZE_ADDRESS__)
   const Folder folder;
   folder.write("rough.ply", rough_ply(20));

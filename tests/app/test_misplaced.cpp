@@ -71,7 +71,7 @@ struct PlaceTest {
 
 }  // namespace
 
-TEST_CASE("points outside of a closed room, and within bodies, are told by number") {
+TEST_CASE("points outside of a closed room, or within bodies, are reported by number") {
   PlaceTest t;
   const char* const lamp = "point.ies,3,2,2.5\n";
   CHECK(t.warnings(t.room, lamp, "3,2,0,0,0,1\n3,2,.75,0,0,1\n.1,.1,2.9,0,0,1\n").empty());
@@ -88,7 +88,7 @@ TEST_CASE("points outside of a closed room, and within bodies, are told by numbe
   CHECK(t.warnings(t.room, lamp, "3,-2,1,0,0,1\n", {"--quiet"}).empty());
 }
 
-TEST_CASE("luminaires outside of a closed room, and within a ceiling, are told by name") {
+TEST_CASE("luminaires outside of a closed room, or within a ceiling, are reported by name") {
   PlaceTest t;
   const char* const floor = "3,2,.75,0,0,1\n";
   for (const char* file : {"point.ies", "panel.ies"}) {
@@ -114,7 +114,7 @@ TEST_CASE("luminaires outside of a closed room, and within a ceiling, are told b
   CHECK(contains(all, "outside of the room: luminaire0"));
 }
 
-TEST_CASE("open scenes, and what only looks odd, are not told of") {
+TEST_CASE("open scenes, and arrangements that only look odd, cause no warning") {
   PlaceTest t;
   const std::string plane =
       t.folder.write("plane.obj", "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nf 1 2 3 4\n");

@@ -17,7 +17,7 @@
 using namespace troffer;
 using namespace troffer::test;
 
-TEST_CASE("four thousand mutated weather files are read whole or refused") {
+TEST_CASE("four thousand mutated weather files are read completely or refused") {
   const Folder folder;
   std::string epw =
       "LOCATION,Wien,-,AUT,none,110350,48.2,16.4,1.0,203.0\nDATA "
@@ -35,7 +35,7 @@ TEST_CASE("four thousand mutated weather files are read whole or refused") {
   });
 }
 
-TEST_CASE("three thousand mutated lists of luminaires are read whole or refused") {
+TEST_CASE("three thousand mutated lists of luminaires are read completely or refused") {
   const Folder folder;
   folder.write("a.ies", beam_ies(1, {0, 45, 90}, {0}));
   const std::string list =

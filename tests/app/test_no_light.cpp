@@ -61,7 +61,7 @@ void check_refused(const Finished& f) {
 
 }  // namespace
 
-TEST_CASE("measure, report and bake stop where nothing shines, and say what to do") {
+TEST_CASE("measure, report and bake refuse scenes without light and say what to do") {
   DarkTest t;
   for (const std::string& scene :
        {t.folder.write("bare.obj", bare_obj), t.folder.write("dark.pbrt", room(0)),
@@ -76,7 +76,7 @@ TEST_CASE("measure, report and bake stop where nothing shines, and say what to d
         std::vector<std::string>{"bare.obj", "dark.gltf", "dark.pbrt", "lamp.ies", "p.csv"});
 }
 
-TEST_CASE("lights that are dimmed to nothing, or chosen and dark, are none") {
+TEST_CASE("lights that are dimmed to zero, or selected but dark, do not count as light") {
   DarkTest t;
   const std::string lit = t.folder.write("lit.pbrt", room(5)),
                     bare = t.folder.write("bare.obj", bare_obj);
@@ -90,7 +90,7 @@ TEST_CASE("lights that are dimmed to nothing, or chosen and dark, are none") {
       t.measure(lit, {"--sky", "overcast", "--light", "emitter0", "--dim", "emitter0=0"}));
 }
 
-TEST_CASE("darkness that is asked for is measured") {
+TEST_CASE("requested darkness is measured") {
   DarkTest t;
   const std::string bare = t.folder.write("bare.obj", bare_obj);
   for (const std::vector<std::string>& asked :
@@ -107,7 +107,7 @@ TEST_CASE("darkness that is asked for is measured") {
   CHECK(measured(even)[0].lx == doctest::Approx(10'000).epsilon(5e-3));
 }
 
-TEST_CASE("the power that luminaires take says nothing about their light") {
+TEST_CASE("the power of luminaires has no effect on their light") {
   DarkTest t;
   const std::string lit = t.folder.write("lit.pbrt", room(5));
   const Finished f = run_program(

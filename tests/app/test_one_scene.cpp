@@ -192,7 +192,7 @@ void check_same(const Image& image, const Image& wanted, double of_mean, double 
 
 }  // namespace
 
-TEST_CASE("modern-hall by pbrt, glTF, Mitsuba and converted is one picture") {
+TEST_CASE("modern-hall gives the same picture from pbrt, glTF, Mitsuba and converted files") {
   const Folder folder;
   const Image wanted = picture(folder, hall + ".pbrt", 1);
   const Scene scene = import_scene(hall + ".pbrt");

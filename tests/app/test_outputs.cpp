@@ -27,7 +27,7 @@ const char* const points_csv = "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n1,0,0,0,0,1\n";
 
 }  // namespace
 
-TEST_CASE("a pipe that nobody reads from is told before any work") {
+TEST_CASE("a pipe without a reader is reported before any work") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt), pipe = folder.path("o.exr");
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
@@ -37,7 +37,7 @@ TEST_CASE("a pipe that nobody reads from is told before any work") {
   CHECK(f.err == "error: cannot write " + pipe + ": nobody reads from this pipe\n");
 }
 
-TEST_CASE("a reader of a pipe gets the picture that a file gets") {
+TEST_CASE("a reader of a pipe gets the same picture as a file") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   const std::string pipe = folder.path("p.pfm"), file = folder.path("o.pfm");
@@ -84,7 +84,7 @@ TEST_CASE("-o /dev/stdout adds to the file that standard output goes to") {
   CHECK(before.st_ino == after.st_ino);
 }
 
-TEST_CASE("a limit on the size of files: exit 1, one line, nothing left") {
+TEST_CASE("a limit on file size: exit status 1, one line, nothing left behind") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   for (const char* name : {"o.exr", "o.pfm", "o.hdr"}) {

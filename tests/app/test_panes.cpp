@@ -79,7 +79,7 @@ const Case cases[] = {
 
 }  // namespace
 
-TEST_CASE("what a pane leaves of a light is Fresnel's, by every method and once") {
+TEST_CASE("a pane transmits light by Fresnel's formulas, applied once, by every method") {
   const std::vector<std::vector<std::string>> methods{
       {"--method", "certified"},
       {"--method", "certified", "--indirect", "none"},
@@ -111,7 +111,9 @@ TEST_CASE("what a pane leaves of a light is Fresnel's, by every method and once"
       }
 }
 
-TEST_CASE("a glazed window is as clean as an open one, and brings what the glass leaves") {
+TEST_CASE(
+    "a glazed window is as free of noise as an open one, and transmits what the glass lets "
+    "through") {
   // A room lit by the sky alone through its window. Glass raises the noise by at most an eighth,
   // and paths and the default agree.
   Room room;
@@ -139,7 +141,9 @@ TEST_CASE("a glazed window is as clean as an open one, and brings what the glass
   }
 }
 
-TEST_CASE("a picture through and beside glass: the same bytes for 1 and 4 threads, one mean") {
+TEST_CASE(
+    "a picture through and beside glass: same bytes for 1 and 4 threads, same mean by all "
+    "methods") {
   const Folder folder;
   Room room;
   room.has_roof_opening = false;

@@ -40,7 +40,7 @@ TEST_CASE("whole numbers are decimal and in range") {
   CHECK(read(NumberKind::integer, "-007") == "-7");
 }
 
-TEST_CASE("real numbers are decimal and finite; a decimal comma is told") {
+TEST_CASE("real numbers are decimal and finite; a decimal comma is reported") {
   for (const char* text : {"1.5", "-1e-3", ".5", "5.", "1E3"})
     CHECK(read(NumberKind::real, text) == text);
   for (const char* text : {"", " 1", "1 ", "nan", "inf", "-inf", "infinity", "0x1p3", "1e999", "1f",
@@ -49,7 +49,7 @@ TEST_CASE("real numbers are decimal and finite; a decimal comma is told") {
   CHECK(read(NumberKind::real, "1,5") == "!'1,5' has a comma: write 1.5");
 }
 
-TEST_CASE("all commands refuse numbers that would wrap or that are none") {
+TEST_CASE("all commands refuse numbers that would overflow and words that are not numbers") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt), out = folder.path("o.exr");
   const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n");

@@ -33,7 +33,7 @@ std::string with_commas(std::string s) {
 
 }  // namespace
 
-TEST_CASE("an even light through a portal in mid-air is the panel that shines there") {
+TEST_CASE("uniform light through a portal in mid-air equals an emitting panel there") {
   const Folder folder;
   const std::string at = folder.write("p.csv", points);
   const std::string turned = "-.5 -.8 2  -.5 .8 2  .5 .8 2  .5 -.8 2";
@@ -65,7 +65,7 @@ TEST_CASE("an even light through a portal in mid-air is the panel that shines th
   }
 }
 
-TEST_CASE("--portal: the name of a rectangle, what is none, and lights that have none") {
+TEST_CASE("--portal: names of rectangles, names of other nodes, and lights without a portal") {
   const Folder folder;
   const std::string at = folder.write("p.csv", points);
   const char* const gltf =
@@ -116,7 +116,7 @@ TEST_CASE("--portal: the name of a rectangle, what is none, and lights that have
   CHECK(f.err.find("--portal does nothing") != std::string::npos);
 }
 
-TEST_CASE("several portals: each lets in its own light, none twice") {
+TEST_CASE("several portals each let in their own light, none twice") {
   const Folder folder;
   const std::string at = folder.write("p.csv", points);
   const std::string open = folder.write(
@@ -160,7 +160,7 @@ TEST_CASE("several portals: each lets in its own light, none twice") {
                           "LightSource \"infinite\" \"rgb L\" [3 3 3]\n");
     return run_program(folder, {"measure", scene, "--points", at, "--portal", whole, "--indirect",
                                 "none", "--spp", "16"})
-               .err.find("1 triangles lie beyond") != std::string::npos;
+               .err.find("1 triangles lie outside") != std::string::npos;
   };
   CHECK(is_told(2.1));
   CHECK(!is_told(1.9));

@@ -30,7 +30,7 @@ double share_of_black(const Image& image) {
 
 }  // namespace
 
-TEST_CASE("a preview stands there whole after two seconds of work, by every method") {
+TEST_CASE("a complete preview exists after two seconds of work, by every method") {
   for (const std::string method : {"certified", "path", "fixed"}) {
     CAPTURE(method);
     const Folder folder;
@@ -82,7 +82,7 @@ TEST_CASE("after a preview the picture is the same, byte for byte") {
   }
 }
 
-TEST_CASE("what fails after a preview leaves no preview behind, nor one output of several") {
+TEST_CASE("a failure after a preview leaves no preview and no single output of several") {
   if (access("/dev/full", W_OK) != 0) return;
   for (const bool is_first : {true, false}) {
     const Folder folder;
@@ -98,7 +98,7 @@ TEST_CASE("what fails after a preview leaves no preview behind, nor one output o
   }
 }
 
-TEST_CASE("a preview comes before images are read, and changes nothing") {
+TEST_CASE("a preview is written before images are read and does not change the result") {
   const Folder folder;
   write_image(folder.path("t.png"), Image(64, 64, Rgb{0.2f, 0.4f, 0.6f}));
   const std::string scene = folder.write(

@@ -60,7 +60,7 @@ std::string drawn_at(double fraction, bool is_quiet) {
 
 }  // namespace
 
-TEST_CASE("progress tells what is done, how far it is, the memory and the time left") {
+TEST_CASE("progress shows the task, its share done, the memory and the time left") {
   const std::string text = drawn_at(.25, false);
   CAPTURE(text);
   CHECK(text.find("reading hall.obj [########........................]  25 %  ") !=
@@ -71,7 +71,9 @@ TEST_CASE("progress tells what is done, how far it is, the memory and the time l
   CHECK(drawn_at(.25, true) == "|");
 }
 
-TEST_CASE("a bar fits its terminal: it shrinks, then time and memory go, then all but percent") {
+TEST_CASE(
+    "a progress bar fits its terminal: it shrinks, then drops time and memory, then all but the "
+    "percentage") {
   const PhaseState state{.25, 30, 120};
   const auto drawn = [&](int columns) { return progress_bar("reading hall.obj", state, columns); };
   CHECK(drawn(120) ==
@@ -90,7 +92,7 @@ TEST_CASE("a bar fits its terminal: it shrinks, then time and memory go, then al
   CHECK(progress_bar("\xc3\xbc\xc3\xbc", {1, 1, 1}, 10) == "\xc3\xbc\xc3\xbc 100 %");
 }
 
-TEST_CASE("elsewhere than on a terminal there is a line for a phase that lasts, and no more") {
+TEST_CASE("without a terminal each long phase prints a single line") {
   int ends[2] = {-1, -1};
   REQUIRE(pipe(ends) == 0);
   std::fflush(stderr);

@@ -33,7 +33,7 @@ std::string refusal(const std::string& scene_path, const std::string& solution,
 
 }  // namespace
 
-TEST_CASE("radiosity writes solution and display, and tells about them") {
+TEST_CASE("radiosity writes a solution and a displayable mesh, and prints a summary") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   const Finished f = run_program(
@@ -79,7 +79,7 @@ TEST_CASE("a solution of another scene or of other settings is refused") {
   CHECK(refusal(scene, scene, nullptr).find("not a radiosity solution") != std::string::npos);
 }
 
-TEST_CASE("radiosity: wrong options, files that cannot be") {
+TEST_CASE("radiosity: wrong options and impossible files are refused") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   const std::string out = folder.path("a.trad");
@@ -109,7 +109,7 @@ TEST_CASE("radiosity: wrong options, files that cannot be") {
   CHECK(run_program(folder, {"radiosity", scene}).status == 2);
 }
 
-TEST_CASE("radiosity stops at a signal, and what it has is written and whole") {
+TEST_CASE("radiosity stops at a signal and writes its unfinished solution intact") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", bright_room_pbrt());
   Running program(folder, {"radiosity", scene, "-o", folder.path("a.trad"), "-o",

@@ -55,7 +55,7 @@ size_t count(const std::string& text, const std::string& what) {
 
 }  // namespace
 
-TEST_CASE("a report: one page without anything from elsewhere, JSON and a table, twice the same") {
+TEST_CASE("a report is one self-contained page, JSON and a table, identical in repeated runs") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", room_pbrt);
   const std::vector<std::string> more{"--power", "emitter0=36", "--title", "<b>Büro</b> & \"co\""};
@@ -101,7 +101,7 @@ TEST_CASE("a report: one page without anything from elsewhere, JSON and a table,
   CHECK(read_file(folder.path("r/points.csv")) == points);
 }
 
-TEST_CASE("inputs are all files that were read, the scene's first") {
+TEST_CASE("a report lists all input files, the scene first") {
   const Folder folder;
   folder.write("a part.pbrt", room_pbrt);
   folder.write("unread.pbrt", room_pbrt);
@@ -121,7 +121,7 @@ TEST_CASE("inputs are all files that were read, the scene's first") {
   CHECK(count(json, "\"sha256\"") == 3);
 }
 
-TEST_CASE("points of the table are what measure says of them") {
+TEST_CASE("points of the report's table agree with measure") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", room_pbrt);
   REQUIRE(run_program(
@@ -152,7 +152,9 @@ TEST_CASE("points of the table are what measure says of them") {
           5 * std::hypot(told[i].error, by_paths[i].error) + 0.005 * told[i].lx);
 }
 
-TEST_CASE("daylight: factors by themselves where there is an opening, and none in a closed room") {
+TEST_CASE(
+    "daylight factors are computed automatically where there is an opening, and not in a closed "
+    "room") {
   const Folder folder;
   const std::string scene =
       std::string(TROFFER_SOURCE_DIR) + "/scenes/daylight-room/daylight-room.gltf";
@@ -174,7 +176,8 @@ TEST_CASE("daylight: factors by themselves where there is an opening, and none i
         std::string::npos);
 }
 
-TEST_CASE("surfaces, observers and profiles of a file; names that try to get out of the page") {
+TEST_CASE(
+    "surfaces, observers and profiles from a file; names cannot inject markup into the page") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", room_pbrt);
   const std::string file = folder.write("what.json", R"({
@@ -194,7 +197,7 @@ TEST_CASE("surfaces, observers and profiles of a file; names that try to get out
   CHECK(points.find("\n\"=cmd") == std::string::npos);
 }
 
-TEST_CASE("what cannot be is told in one line, and leaves no folder") {
+TEST_CASE("impossible requests are reported in one line and leave no folder") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", room_pbrt);
   struct Row {
@@ -216,7 +219,7 @@ TEST_CASE("what cannot be is told in one line, and leaves no folder") {
   }
 }
 
-TEST_CASE("a comparison sets another report beside this one, and refuses what is none") {
+TEST_CASE("a comparison shows another report beside this one, and refuses other files") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", room_pbrt);
   const std::vector<std::string> quick{"--pictures", "off", "--power", "emitter0=36"};
@@ -254,7 +257,7 @@ TEST_CASE("a comparison sets another report beside this one, and refuses what is
   }
 }
 
-TEST_CASE("files of surfaces that are damaged anyhow are read or refused by place") {
+TEST_CASE("damaged files of surfaces are read or refused with the place of the error") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", room_pbrt);
   const std::string whole =
@@ -282,7 +285,7 @@ TEST_CASE("files of surfaces that are damaged anyhow are read or refused by plac
   CHECK(read >= 6);  // the unmodified files
 }
 
-TEST_CASE("a signal ends it with nothing written") {
+TEST_CASE("a signal ends report with nothing written") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", room_pbrt);
   Running program(folder,

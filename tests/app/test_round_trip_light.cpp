@@ -170,7 +170,7 @@ std::array<double, 4> quarters(Scene scene) {
 
 }  // namespace
 
-TEST_CASE("what is converted without a warning looks as it did") {
+TEST_CASE("a scene that is converted without a warning looks the same") {
   size_t compared = 0;
   for (uint32_t seed = 1; seed <= 24; ++seed) {
     const Scene scene = RandomScene(seed).make();

@@ -112,7 +112,7 @@ TEST_CASE("two outputs that are one file are refused, whatever they are called")
   in.check_refused(with({"-o", in.path("hard.exr")}), "each output needs a file of its own");
 }
 
-TEST_CASE("what standard output and standard error go to is no output's file, nor an input") {
+TEST_CASE("the files of standard output and standard error cannot be outputs or inputs") {
   const Inputs in;
   const auto run = [&](const Words& words, const std::string& name, int descriptor) {
     return Running(in.folder, words,
@@ -146,7 +146,7 @@ TEST_CASE("devices and pipes may be named twice, and need no ending") {
   CHECK(run({"-o", in.folder.path()}).status == 2);
 }
 
-TEST_CASE("a link stays: to nothing yet, over several, to another folder; loops are errors") {
+TEST_CASE("links are kept: dangling, chained and to other folders; loops are errors") {
   const Inputs in;
   fs::create_directory(in.path("deep"));
   fs::create_symlink("deep/new.exr", in.path("b.exr"));

@@ -36,7 +36,7 @@ double rounds_told(const Folder& folder) {
 
 }  // namespace
 
-TEST_CASE("--solution keeps cells; the next view goes on from them and says the same") {
+TEST_CASE("--solution stores cells; the next view reuses them with the same result") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", bright_room_pbrt());
   const std::string stats = folder.path("s.json"), file = folder.path("a.cells");
@@ -81,7 +81,7 @@ TEST_CASE("--solution: same cells and picture for any number of threads") {
   CHECK(pictures[0] == pictures[1]);
 }
 
-TEST_CASE("--solution: measure takes and keeps cells too") {
+TEST_CASE("--solution: measure reads and stores cells too") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", bright_room_pbrt());
   const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n1,0,0,0,0,1\n");
@@ -103,7 +103,7 @@ TEST_CASE("--solution: measure takes and keeps cells too") {
   }
 }
 
-TEST_CASE("--solution: cells that are kept, and views and points that see nothing") {
+TEST_CASE("--solution: stored cells, and views and points that see nothing") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", bright_room_pbrt());
   const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n500,500,500,0,0,1\n");
@@ -144,7 +144,7 @@ TEST_CASE("--solution: cells of another scene, damaged ones and other files are 
   CHECK(run_program(folder, render_of(folder, other, {"--method", "kj92"})).status == 1);
 }
 
-TEST_CASE("radiosity --cells: of all surfaces, for any view; under a sky too") {
+TEST_CASE("radiosity --cells computes cells of all surfaces for any view, also under a sky") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", bright_room_pbrt()),
                     file = folder.path("a.cells"), stats = folder.path("s.json");

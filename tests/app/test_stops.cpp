@@ -119,7 +119,7 @@ const char* const points_csv =
 
 }  // namespace
 
-TEST_CASE("a picture is replaced by a whole one alone, whenever the rendering is stopped") {
+TEST_CASE("a picture is only replaced by a complete one, whenever rendering is stopped") {
   std::mt19937 random(3);
   for (const Words& more :
        {Words{"--method", "path", "--spp", "64"}, Words{"--error", ".3", "--preview"}}) {
@@ -135,7 +135,7 @@ TEST_CASE("a picture is replaced by a whole one alone, whenever the rendering is
   }
 }
 
-TEST_CASE("statistics of a stopped rendering go beside those of a whole one") {
+TEST_CASE("statistics of a stopped rendering are written beside those of a complete one") {
   std::mt19937 random(4);
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt), json = folder.path("s.json");
@@ -147,7 +147,7 @@ TEST_CASE("statistics of a stopped rendering go beside those of a whole one") {
              random);
 }
 
-TEST_CASE("measured values are replaced by those of all points alone") {
+TEST_CASE("measured values are only replaced by those of all points") {
   std::mt19937 random(5);
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt),
@@ -159,7 +159,7 @@ TEST_CASE("measured values are replaced by those of all points alone") {
              random);
 }
 
-TEST_CASE("a solution is replaced by a finished one alone; an unfinished one is refused") {
+TEST_CASE("a solution is only replaced by a finished one; an unfinished one is refused") {
   std::mt19937 random(6);
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", bright_room_pbrt()),
@@ -171,7 +171,7 @@ TEST_CASE("a solution is replaced by a finished one alone; an unfinished one is 
              random);
 }
 
-TEST_CASE("a report, a baked and a converted scene are replaced whole") {
+TEST_CASE("a report, a baked scene and a converted scene are replaced as a whole") {
   std::mt19937 random(7);
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", bright_room_pbrt());
@@ -191,7 +191,7 @@ TEST_CASE("a report, a baked and a converted scene are replaced whole") {
   stop_often(folder, {{"convert", scene, converted}, {converted}}, random);
 }
 
-TEST_CASE("a joined picture is replaced whole") {
+TEST_CASE("a merged picture is replaced as a whole") {
   std::mt19937 random(8);
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt), out = folder.path("o.exr");
@@ -205,7 +205,7 @@ TEST_CASE("a joined picture is replaced whole") {
   stop_often(folder, {merge, {out}}, random);
 }
 
-TEST_CASE("a view can be stopped at any moment, and leaves nothing") {
+TEST_CASE("view can be stopped at any moment and leaves nothing behind") {
   std::mt19937 random(9);
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);

@@ -67,7 +67,7 @@ void append(std::string& bytes, std::initializer_list<T> values) {
 
 }  // namespace
 
-TEST_CASE("thin boxes of solid glass are panes, double glazing is two of them") {
+TEST_CASE("thin boxes of solid glass are panes; double glazing is two panes") {
   const char* const points = "x,y,z,nx,ny,nz\n.3,.1,0,0,0,1\n1.7,0,0,0,0,1\n";
   for (const int panes : {1, 2}) {
     const Folder folder;
@@ -83,7 +83,7 @@ TEST_CASE("thin boxes of solid glass are panes, double glazing is two of them") 
   }
 }
 
-TEST_CASE("a thick body of glass stays one") {
+TEST_CASE("a thick body of glass stays a solid body") {
   const Folder folder;
   const std::string scene =
       folder.write("s.pbrt", std::string("WorldBegin\n") + black_floor + glass_box(1, 100));
@@ -116,7 +116,7 @@ TEST_CASE("glTF: transmission without volume is a pane, tinted by the base colou
         tint * under_sky(1));
 }
 
-TEST_CASE("OBJ: what is dissolved lets light straight through") {
+TEST_CASE("OBJ: materials with d below 1 let light straight through") {
   const Folder folder;
   folder.write("s.mtl", "newmtl floor\nKd 0 0 0\nnewmtl glass\nKd 1 1 1\nd 0\n");
   const std::string scene =
@@ -129,7 +129,7 @@ TEST_CASE("OBJ: what is dissolved lets light straight through") {
         under_sky(1));
 }
 
-TEST_CASE("a pane mirrors what lies before it without noise, at 4 viewing rays") {
+TEST_CASE("a pane reflects the room in front of it without noise at 4 viewing rays") {
   const Folder folder;
   const std::string scene = folder.write(
       "s.pbrt", std::string("LookAt 0 0 3  2 0 1  0 0 1\nCamera \"perspective\" \"float fov\" [2]\n"

@@ -79,7 +79,7 @@ TEST_CASE("a corridor's floor is assessed, not its wall") {
   CHECK(j["surfaces"][0]["area_m2"].get<double>() == doctest::Approx(20));
 }
 
-TEST_CASE("info tells the decision and the doubt; --up settles both") {
+TEST_CASE("info shows the chosen up direction and any doubt; --up settles both") {
   const Folder folder;
   const std::string scene = folder.write("tower.obj", box_obj("20", "20", "60"));
   const Finished text = run_program(folder, {"info", scene});
@@ -97,7 +97,9 @@ TEST_CASE("info tells the decision and the doubt; --up settles both") {
   CHECK(json({"--up", "-z"})["doubt"] == "");
 }
 
-TEST_CASE("statistics tell which way is up, and only what depends on it is told of") {
+TEST_CASE(
+    "statistics state the up direction; measuring points does not depend on it and prints no "
+    "note") {
   const Folder folder;
   folder.write("c.mtl", corridor_mtl);
   const std::string scene = folder.write("c.obj", corridor_obj), stats = folder.path("s.json");
@@ -117,7 +119,7 @@ TEST_CASE("statistics tell which way is up, and only what depends on it is told 
   CHECK(run_program(folder, {"measure", scene, "--points", points}).remarks() == "");
 }
 
-TEST_CASE("every command that loads a scene knows --up") {
+TEST_CASE("every command that loads a scene accepts --up") {
   const Folder folder;
   const std::string scene = folder.write("tower.obj", box_obj("20", "20", "60"));
   for (const char* command :

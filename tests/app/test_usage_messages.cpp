@@ -51,7 +51,7 @@ const char* const named_gltf = R"({"asset": {"version": "2.0"}, "scene": 0,
 
 }  // namespace
 
-TEST_CASE("mistyped commands and options: what may have been meant") {
+TEST_CASE("mistyped commands and options get a suggestion") {
   const Folder folder;
   check_messages(
       folder,
@@ -82,7 +82,7 @@ TEST_CASE("mistyped commands and options: what may have been meant") {
       2);
 }
 
-TEST_CASE("values that cannot be read: what to write") {
+TEST_CASE("messages about unreadable values say what to write") {
   const Folder folder;
   check_messages(
       folder,
@@ -114,7 +114,7 @@ TEST_CASE("values that cannot be read: what to write") {
       2);
 }
 
-TEST_CASE("names that a scene does not have: the nearest one is offered") {
+TEST_CASE("unknown names get the nearest name of the scene as a suggestion") {
   const Folder folder;
   const std::string scene = folder.write("room.gltf", named_gltf), out = folder.path("o.exr");
   check_messages(
@@ -135,7 +135,7 @@ TEST_CASE("names that a scene does not have: the nearest one is offered") {
       2);
 }
 
-TEST_CASE("files that are missing or empty") {
+TEST_CASE("missing or empty files are reported") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   const std::string wrong = folder.path("rom.pbrt");
@@ -160,7 +160,7 @@ TEST_CASE("files that are missing or empty") {
             .status == 0);
 }
 
-TEST_CASE("layers for files that cannot hold them are told of") {
+TEST_CASE("layers for files that cannot hold them cause a warning") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   const auto err = [&](const std::vector<std::string>& more) {
@@ -176,7 +176,7 @@ TEST_CASE("layers for files that cannot hold them are told of") {
   CHECK(err({"-o", png, "-o", exr, "--exposure", "0"}) == "");
 }
 
-TEST_CASE("help lists the commands, and a command's options by groups") {
+TEST_CASE("help lists the commands and the options of a command by groups") {
   const Folder folder;
   const Finished help = run_program(folder, {"help"}), bare = run_program(folder, {});
   CHECK(help.status == 0);
@@ -217,7 +217,7 @@ TEST_CASE("help lists the commands, and a command's options by groups") {
   }
 }
 
-TEST_CASE("every option of every command has its group and the name of its value") {
+TEST_CASE("every option of every command has a group and a value name") {
   const Folder folder;
   const auto help = nlohmann::json::parse(run_program(folder, {"help", "--json"}).out);
   REQUIRE(help["commands"].size() >= 10);

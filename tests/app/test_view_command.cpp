@@ -11,7 +11,7 @@
 
 using namespace troffer::test;
 
-TEST_CASE("view tells its address, and a signal ends it") {
+TEST_CASE("view prints its address, and a signal ends it") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   for (const int which : {SIGINT, SIGTERM}) {
@@ -56,7 +56,7 @@ std::string address_of(const Running& program) {
 
 }  // namespace
 
-TEST_CASE("another time of day lights the scene that was read, though its files are gone") {
+TEST_CASE("another time of day relights the loaded scene even if its files are gone") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   folder.write("image.pfm", "PF\n2 1\n-1.0\n" + std::string(24, '\0'));
@@ -79,7 +79,7 @@ TEST_CASE("another time of day lights the scene that was read, though its files 
   CHECK(program.wait().status == 130);
 }
 
-TEST_CASE("view refuses what it cannot show, before any page is there") {
+TEST_CASE("view refuses what it cannot show before it opens a page") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   const auto run = [&](const std::vector<std::string>& more) {

@@ -58,7 +58,7 @@ bool contains(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("an hour with direct light alone has its sun") {
+TEST_CASE("an hour with only direct light has its sun") {
   WeatherTest t;
   const double alone = t.lx(epw(equator, "3,21", 13, "780,800,0"), "03-21T12:30");
   const double with_little = t.lx(epw(equator, "3,21", 13, "781,800,1"), "03-21T12:30");
@@ -80,7 +80,9 @@ TEST_CASE("an hour with direct light alone has its sun") {
             .status == 2);
 }
 
-TEST_CASE("codes of missing irradiance are an error, and no light is told by what there is") {
+TEST_CASE(
+    "missing irradiances are an error; an hour with only global irradiance stays dark with a "
+    "warning") {
   WeatherTest t;
   for (const char* fields : {"9999,9999,9999", "500,9999,100", "500,300,9999", "500,999999,100",
                              "500,,100", "500,99999,100", "500,300,-9999"}) {
@@ -94,13 +96,13 @@ TEST_CASE("codes of missing irradiance are an error, and no light is told by wha
   CHECK(contains(much.err, "more than the sun sends"));
   const Finished dark = t.run(epw(equator, "3,21", 13, "500,0,0"), "03-21T12:30", "0,0,1");
   CHECK(dark.status == 0);
-  CHECK(contains(dark.err, "500 W/m2 on the ground"));
+  CHECK(contains(dark.err, "500 W/m2 of global irradiance"));
   // The column of global radiation does not matter.
   CHECK(t.lx(epw(equator, "3,21", 13, "9999,800,100"), "03-21T12:30") ==
         doctest::Approx(t.lx(epw(equator, "3,21", 13, "880,800,100"), "03-21T12:30")));
 }
 
-TEST_CASE("an hour's row ends at its number, and a day's last one at 24:00") {
+TEST_CASE("the row of an hour ends at that hour, the last of a day at 24:00") {
   WeatherTest t;
   const std::string noon = epw(equator, "3,21", 13, "880,800,100");
   CHECK(t.lx(noon, "03-21T12:00") > 50'000);  // hour 13 is 12:00 to 13:00
@@ -115,7 +117,7 @@ TEST_CASE("an hour's row ends at its number, and a day's last one at 24:00") {
   CHECK(t.lx(tromso, "06-21T24:00") == doctest::Approx(t.lx(tromso, "06-21T23:59")).epsilon(0.02));
 }
 
-TEST_CASE("in the south the sun of noon stands in the north") {
+TEST_CASE("in the southern hemisphere the sun stands in the north at noon") {
   WeatherTest t;
   const std::string june = epw(sydney, "6,21", 13, "500,800,0");
   CHECK(t.lx(june, "06-21T12:00", "0,1,0") > 40'000);  // +y is north
@@ -128,7 +130,7 @@ TEST_CASE("in the south the sun of noon stands in the north") {
   CHECK(t.lx(vienna, "06-21T12:00", "0,1,0") == 0);
 }
 
-TEST_CASE("leap days are days of files that have them, whatever year their row says") {
+TEST_CASE("leap days are accepted for files that have them, whatever the year of the row") {
   WeatherTest t;
   const std::string leap = epw(equator, "2,29", 13, "880,800,100", 2004);
   CHECK(t.lx(leap, "02-29T12:30") > 50'000);
@@ -138,8 +140,8 @@ TEST_CASE("leap days are days of files that have them, whatever year their row s
                                    {"13-01T12:30", "the month 13"},
                                    {"06-21T12:60", "the minute 60"},
                                    {"06-21", "the time of day is missing"},
-                                   {"2005-06-21T12:30", "no year belongs here"},
-                                   {"06-21T12:30+02:00", "'+02:00' follows the minute"},
+                                   {"2005-06-21T12:30", "give no year"},
+                                   {"06-21T12:30+02:00", "'+02:00' must not follow the minute"},
                                    {"noon", "the month: a number expected"}}) {
     const Finished f = t.run(leap, date, "0,0,1");
     CAPTURE(date);
@@ -150,7 +152,7 @@ TEST_CASE("leap days are days of files that have them, whatever year their row s
   }
 }
 
-TEST_CASE("--at says which of its parts is wrong") {
+TEST_CASE("--at names the part that is wrong") {
   WeatherTest t;
   t.folder.write("p.csv", "x,y,z,nx,ny,nz\n0,0,1,0,0,1\n");
   const auto run = [&](const std::string& at) {

@@ -110,7 +110,7 @@ TEST_CASE("texels of a floor under a rectangle have its exact irradiance") {
   CHECK(r.figures.error_lx < 0.01 * r.figures.mean_lx);
 }
 
-TEST_CASE("texels in a room are what measure finds there") {
+TEST_CASE("texels in a room agree with measure") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f});
   add_box_inside(s, grey, {-2, -2, 0}, {2, 2, 2.5f});
@@ -146,7 +146,7 @@ TEST_CASE("texels in a room are what measure finds there") {
   }
 }
 
-TEST_CASE("no two charts share a texel, and gutters repeat what they border") {
+TEST_CASE("no two charts share a texel, and gutters repeat the adjacent texels") {
   Scene s = lit_floor();
   s.meshes.push_back(dented_ball(0, 16));
   for (Vec3& p : s.meshes.back().positions) p = p * 0.3f + Vec3{0.5f, 0, 0.5f};
@@ -170,7 +170,9 @@ TEST_CASE("no two charts share a texel, and gutters repeat what they border") {
   CHECK(bled == 0);
 }
 
-TEST_CASE("a wall without thickness lets nothing through, nor does a floor under a box darken") {
+TEST_CASE(
+    "a wall without thickness lets no light through, and the dark floor under a box does not "
+    "spread") {
   // Two rooms with floors of their own, and between them a wall: two coincident quads, back to
   // back.
   Scene s;
@@ -240,7 +242,7 @@ TEST_CASE("a wall without thickness lets nothing through, nor does a floor under
     CHECK(shown[i] == doctest::Approx(truth.values[i].illuminance_lx).epsilon(0.15));
 }
 
-TEST_CASE("a sheet that is lit on both sides gets two layers, each with its own light") {
+TEST_CASE("a sheet lit on both sides gets two layers, each with its own light") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
   s.meshes.resize(add_quad(s, grey, {Vec3{0, -1, 0}, {0, 1, 0}, {0, 1, 2}, {0, -1, 2}}) + 1);
@@ -278,7 +280,7 @@ TEST_CASE("a sheet that is lit on both sides gets two layers, each with its own 
   CHECK(seen.size() == 2);
 }
 
-TEST_CASE("instances share their mesh but not their light") {
+TEST_CASE("instances share a mesh but not their light") {
   Scene s = lit_floor();
   s.instanced_meshes.push_back(dented_ball(0, 12));
   add_instance(s, 0, Affine::translate({0, 0, 0.5}) * Affine::scale({0.3, 0.3, 0.3}), "near");
@@ -304,7 +306,8 @@ TEST_CASE("instances share their mesh but not their light") {
   }
 }
 
-TEST_CASE("the light does not depend on threads, and a stop leaves nothing") {
+TEST_CASE(
+    "baked light does not depend on the number of threads, and a stop leaves nothing behind") {
   Scene s = lit_floor();
   s.meshes.push_back(dented_ball(0, 8));
   for (Vec3& p : s.meshes.back().positions) p = p * 0.2f + Vec3{0.5f, 0, 0.5f};
@@ -320,7 +323,7 @@ TEST_CASE("the light does not depend on threads, and a stop leaves nothing") {
   CHECK(!bake(prepared, o, {}, stopped).is_complete);
 }
 
-TEST_CASE("vertices get the mean around them") {
+TEST_CASE("a vertex gets the mean light around it") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
   Mesh grid;

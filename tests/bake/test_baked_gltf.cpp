@@ -117,7 +117,8 @@ void check_sound(const Written& w) {
 
 }  // namespace
 
-TEST_CASE("lightmaps stand in sound files, and instances share all but their coordinates") {
+TEST_CASE(
+    "lightmaps are written to valid files, and instances share all but their texture coordinates") {
   const TempFolder folder;
   BakeResult r;
   const Written w = written(room(), BakedShading::lightmap, folder.path("room.gltf"), &r);
@@ -145,7 +146,7 @@ TEST_CASE("lightmaps stand in sound files, and instances share all but their coo
   CHECK(again.lights.size() == 1);
 }
 
-TEST_CASE("what emits as it was lit looks as the room did") {
+TEST_CASE("a room of surfaces that emit their reflected light looks like the original") {
   const TempFolder folder;
   const Scene scene = room();
   const Written w = written(scene, BakedShading::emissive, folder.path("room.gltf"));
@@ -184,7 +185,7 @@ TEST_CASE("what emits as it was lit looks as the room did") {
   CHECK(off / sum < 0.06);
 }
 
-TEST_CASE("a lightmap is named when a file is read, and shown where it is asked for") {
+TEST_CASE("a lightmap is reported when a file is read, and shown with --baked") {
   const TempFolder folder;
   const Scene scene = room();
   written(scene, BakedShading::lightmap, folder.path("room.gltf"));
@@ -220,7 +221,7 @@ TEST_CASE("a lightmap is named when a file is read, and shown where it is asked 
   CHECK(mean(shown, 0, 1) == doctest::Approx(mean(scene, -1, luminous_efficacy)).epsilon(0.05));
 }
 
-TEST_CASE("unlit pictures and colours of vertices are written as their extensions have it") {
+TEST_CASE("unlit images and vertex colours follow their glTF extensions") {
   const TempFolder folder;
   BakeResult r;
   const Written unlit = written(room(), BakedShading::unlit, folder.path("unlit.gltf"), &r);
@@ -241,7 +242,7 @@ TEST_CASE("unlit pictures and colours of vertices are written as their extension
   CHECK(with_colors == 8);
 }
 
-TEST_CASE("hostile meshes are baked or left dark, never more") {
+TEST_CASE("hostile meshes are baked or left dark, and nothing worse") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
   const float nan = std::nanf("");

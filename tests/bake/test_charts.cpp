@@ -80,7 +80,7 @@ Mesh soup(size_t triangles, uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("a box has six charts as large as its sides") {
+TEST_CASE("a box has six charts the size of its sides") {
   Scene s;
   add_diffuse(s, Rgb{0.5f});
   add_box_inside(s, 0, {0, 0, 0}, {3, 2, 1});
@@ -99,7 +99,7 @@ TEST_CASE("a box has six charts as large as its sides") {
   CHECK(area == doctest::Approx(2 * (6 + 3 + 2)));
 }
 
-TEST_CASE("curved, torn, doubled and broken meshes are laid out without overlap") {
+TEST_CASE("charts of curved, torn, doubled and broken meshes do not overlap") {
   check_charts(dented_ball(0, 24));
   for (const uint64_t seed : {1, 2, 3}) check_charts(soup(300, seed));
   Mesh doubled = dented_ball(0, 8);
@@ -124,7 +124,7 @@ TEST_CASE("curved, torn, doubled and broken meshes are laid out without overlap"
   CHECK(charted(ramp).charts.size() >= 3);
 }
 
-TEST_CASE("triangles that are none get no chart") {
+TEST_CASE("degenerate triangles get no chart") {
   Mesh m;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   m.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {nan, 0, 0}, {2, 0, 0}, {1e30f, 1e30f, 0}};
@@ -160,7 +160,7 @@ TEST_CASE("rectangles are packed without overlap, groups on one page each") {
   CHECK(pack(wide, 64, 64) == 0);
 }
 
-TEST_CASE("a second set of coordinates serves only where it can hold a lightmap") {
+TEST_CASE("a second set of texture coordinates is used only if it can hold a lightmap") {
   Mesh m;
   m.positions = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
   m.triangles = {{0, 1, 2}, {0, 2, 3}};

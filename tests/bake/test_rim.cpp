@@ -78,13 +78,13 @@ TEST_CASE("a floor keeps its light at the foot of walls that reach the ceiling")
   }
 }
 
-TEST_CASE("a wall that ends below the ceiling darkens nothing either") {
+TEST_CASE("a wall that ends below the ceiling does not darken the floor either") {
   const BakeResult r = baked(room("free-standing.gltf"), 128, 32);
   const double near = light_on_floor(r, 3.895, 2), far = light_on_floor(r, 3.7, 2);
   CHECK(near > 0.8 * far);
 }
 
-TEST_CASE("with a wall without thickness the lit side keeps its light, the dark one stays dark") {
+TEST_CASE("at a wall without thickness the lit side keeps its light and the dark side stays dark") {
   Scene scene = room("open-sheets.gltf");
   for (uint32_t i = 0; i < scene.meshes.size(); ++i) {
     if (scene.meshes[i].name != "b") continue;

@@ -26,7 +26,7 @@ const std::vector<int> samples{40, 50, 60};
 
 }  // namespace
 
-TEST_CASE("a failed CHECK tells the condition, the item and the command") {
+TEST_CASE("a failed CHECK prints the condition, the item and the command") {
   const std::string message = abort_message([] {
     set_check_command("troffer render room.pbrt");
     const CheckContext context(&samples, samples.size(), name_of);
@@ -42,14 +42,14 @@ TEST_CASE("a failed CHECK tells the condition, the item and the command") {
   CHECK(contains(message, "reproduce with: troffer render room.pbrt"));
 }
 
-TEST_CASE("a CHECK that holds does nothing; without a context there is no place") {
+TEST_CASE("a CHECK that holds does nothing; without a context the message has no place") {
   CHECK(abort_message([] { TROFFER_CHECK(samples.size() == 3); }).empty());
   const std::string message = abort_message([] { TROFFER_CHECK(samples.empty()); });
   CHECK(contains(message, "failed"));
   CHECK_FALSE(contains(message, " at "));
 }
 
-TEST_CASE("the place follows batches, loops and threads") {
+TEST_CASE("the place in a message follows batches, loops and threads") {
   CHECK(check_place().empty());
   {
     const CheckContext context(&samples, samples.size(), name_of);

@@ -16,7 +16,7 @@ void wait_for(const StopFlag& flag) {
 
 }  // namespace
 
-TEST_CASE("a deadline sets its flag when time is up, and says so") {
+TEST_CASE("a deadline sets its flag when time is up and reports it") {
   const StopFlag parent = false;
   const Deadline past(parent, Deadline::Clock::now());
   wait_for(past.flag());
@@ -28,7 +28,7 @@ TEST_CASE("a deadline sets its flag when time is up, and says so") {
   CHECK(future.seconds_left() > 3000);
 }
 
-TEST_CASE("… earlier by what is kept back, and when its parent is set, which is no end of time") {
+TEST_CASE("a deadline ends early by its reserve; a stop by the parent does not count as time up") {
   StopFlag parent = false;
   Deadline kept(parent, Deadline::Clock::now() + far_off),
       stopped(parent, Deadline::Clock::now() + far_off);

@@ -15,7 +15,7 @@
 
 using namespace troffer;
 
-TEST_CASE("weld: the same place is the same number") {
+TEST_CASE("weld: equal positions get the same number") {
   const std::vector<Vec3> p{{0, 1, 2}, {1, 1, 2}, {-0.0f, 1, 2}, {0, 1, 2}, {1, 1, 2.0000002f}};
   const std::vector<uint32_t> w = weld(p);
   CHECK(w[0] == w[2]);
@@ -24,7 +24,7 @@ TEST_CASE("weld: the same place is the same number") {
   CHECK(w[1] != w[4]);
 }
 
-TEST_CASE("edges of polygons are all there, in order") {
+TEST_CASE("edges of polygons are complete and in order") {
   Random r(1);
   PolygonList list;
   std::vector<std::tuple<uint32_t, uint32_t, uint32_t, bool>> expected;
@@ -50,7 +50,7 @@ TEST_CASE("edges of polygons are all there, in order") {
   CHECK(found == expected);
 }
 
-TEST_CASE("the table of edges grows, forgets, and knows what many share") {
+TEST_CASE("the edge table grows, removes edges, and handles edges that many polygons share") {
   EdgeTable t;
   t.clear(1);
   for (uint32_t i = 0; i < 3000; ++i) t.insert(i, i * 7 + 1, i);
@@ -65,7 +65,7 @@ TEST_CASE("the table of edges grows, forgets, and knows what many share") {
   CHECK(t.find(5, 36) == EdgeTable::many);
 }
 
-TEST_CASE("corners are limited, and the front stays the front") {
+TEST_CASE("merged polygons have a limited number of corners and keep their front") {
   // one fan around the centre of a regular polygon, and one around a corner
   for (uint32_t n = 3; n <= 24; ++n)
     for (const size_t most : {size_t(4), size_t(8), size_t(11), size_t(12)})
@@ -99,7 +99,7 @@ TEST_CASE("corners are limited, and the front stays the front") {
       }
 }
 
-TEST_CASE("quadrilaterals and polygons merge too; nothing at all does not") {
+TEST_CASE("quadrilaterals and polygons merge too; empty input stays empty") {
   // three squares in a row, the middle one as two triangles
   const std::vector<Vec3> p{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0},
                             {0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {3, 1, 0}};
@@ -117,7 +117,7 @@ TEST_CASE("quadrilaterals and polygons merge too; nothing at all does not") {
   CHECK(m.polygons.size() == 0);
 }
 
-TEST_CASE("edges by parts are those of the sorted list, and merge the same") {
+TEST_CASE("edges collected in parts equal the sorted list and merge identically") {
   // A rough grid, flat in one half, with more edges than one part holds.
   constexpr uint32_t n = 480;
   std::vector<Vec3> p;

@@ -27,7 +27,7 @@ size_t threads_of_loop() {
 
 }  // namespace
 
-TEST_CASE("loops that ask for no number of threads keep to a limit while it lives") {
+TEST_CASE("loops without a thread count respect an active limit") {
   const int all = thread_count(0);
   {
     const ThreadLimit limit(1);
@@ -41,7 +41,7 @@ TEST_CASE("loops that ask for no number of threads keep to a limit while it live
   CHECK(threads_of_loop() >= size_t(std::min(all, 2)));
 }
 
-TEST_CASE("pieces of a loop cover it once, without gaps") {
+TEST_CASE("the pieces of a loop cover it exactly once") {
   for (const size_t n : {0, 1, 9, 10, 11, 95}) {
     std::vector<int> times(n, 0);
     std::mutex mutex;

@@ -36,7 +36,7 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
 
 }  // namespace
 
-TEST_CASE("Sobol points from tables are those of the direction numbers") {
+TEST_CASE("Sobol points from tables equal those from direction numbers") {
   Random random(1);
   for (int i = 0; i < 2000; ++i) {
     const uint32_t index = i < 64 ? uint32_t(i) : random.next_u32();
@@ -116,7 +116,7 @@ TEST_CASE("one point of many streams is uniform in its pairs of dimensions") {
     }
 }
 
-TEST_CASE("streams and purposes do not follow one another") {
+TEST_CASE("streams of different purposes are uncorrelated") {
   // Sums over whole sets of Sobol points nearly cancel. A bound of five standard deviations of
   // independent numbers is therefore generous.
   constexpr uint32_t n = 4096;
@@ -171,7 +171,7 @@ TEST_CASE("the plain stream is uniform and hashes are bijections of bits") {
   CHECK(images.size() == 4096);
 }
 
-TEST_CASE("groups drawn at a stroke are those drawn one by one, bit for bit") {
+TEST_CASE("groups drawn at once equal those drawn one by one, bit for bit") {
   constexpr size_t n = 1003;  // not a multiple of any vector register's width
   std::vector<uint64_t> streams(n);
   std::vector<uint32_t> samples(n);
@@ -190,7 +190,7 @@ TEST_CASE("groups drawn at a stroke are those drawn one by one, bit for bit") {
   }
 }
 
-TEST_CASE("blocks hold the points of their samples, those close to each other together") {
+TEST_CASE("blocks hold the points of their samples, neighbours together") {
   for (const uint32_t n : {1u, 16u, 64u, 512u, 48u}) {
     const SobolBlocks blocks(n);
     REQUIRE(blocks.size() == n);

@@ -14,7 +14,7 @@ constexpr SphereMap maps[] = {SphereMap::lat_long, SphereMap::equal_area};
 
 }  // namespace
 
-TEST_CASE("directions and squares are each other's inverse") {
+TEST_CASE("the maps between directions and squares are inverse to each other") {
   Random random(1);
   for (const SphereMap map : maps)
     for (int i = 0; i < 20000; ++i) {
@@ -50,7 +50,7 @@ TEST_CASE("the solid angle of a small square is its area times the stated factor
     }
 }
 
-TEST_CASE("the middle of an equal-area map is +z, its corners -z, its axes where they should be") {
+TEST_CASE("the middle of an equal-area map is +z, its corners are -z, and its axes are correct") {
   CHECK(length(equal_area_direction({0.5f, 0.5f}) - Vec3{0, 0, 1}) < 1e-6f);
   CHECK(length(equal_area_direction({1, 0.5f}) - Vec3{1, 0, 0}) < 1e-6f);
   CHECK(length(equal_area_direction({0.5f, 1}) - Vec3{0, 1, 0}) < 1e-6f);
@@ -60,7 +60,7 @@ TEST_CASE("the middle of an equal-area map is +z, its corners -z, its axes where
   CHECK(length(lat_long_direction({0.3f, 0}) - Vec3{0, 0, 1}) < 1e-6f);
 }
 
-TEST_CASE("texels beyond an edge are the neighbours on the sphere") {
+TEST_CASE("texels beyond an edge are their neighbours on the sphere") {
   constexpr int n = 64;
   for (const SphereMap map : maps) {
     const int width = map == SphereMap::lat_long ? 2 * n : n;

@@ -29,7 +29,7 @@ TEST_CASE("the nearest name is found, and none where all are far") {
   CHECK(nearest_name("render", {}) == "");
 }
 
-TEST_CASE("a suggestion ends a message") {
+TEST_CASE("a suggestion is appended to a message") {
   CHECK(did_you_mean("fimlic", {"filmic", "none"}) == "; did you mean 'filmic'?");
   CHECK(did_you_mean("zzz", {"filmic", "none"}) == "");
 }

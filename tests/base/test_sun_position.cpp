@@ -61,7 +61,7 @@ TEST_CASE("times as ISO 8601 writes them") {
   }
 }
 
-TEST_CASE("a time that cannot be read names the part that is wrong") {
+TEST_CASE("the error for an unreadable time names the wrong part") {
   for (const auto& [text, part] :
        {std::pair<const char*, const char*>{"2026-13-21T12:00Z", "the month 13"},
         {"2026-06-31T12:00Z", "the day 31 does not lie between 1 and 30"},
@@ -73,9 +73,9 @@ TEST_CASE("a time that cannot be read names the part that is wrong") {
         {"2026-06-21T25:00Z", "the hour 25"},
         {"2026-06-21T24:30Z", "a day ends at 24:00"},
         {"2026-06-21T12:00", "the time zone is missing"},
-        {"2026-06-21T12:00CET", "the time zone is Z"},
+        {"2026-06-21T12:00CET", "the time zone must be Z"},
         {"2026-06-21T12:00+15", "the time zone's hour 15"},
-        {"2026-06-21T12:00Zulu", "'ulu' follows the time zone"},
+        {"2026-06-21T12:00Zulu", "'ulu' must not follow the time zone"},
         {"21.06.2026 12:00Z", "the year 21"},
         {"noon", "the year: a number expected"}}) {
     CAPTURE(text);

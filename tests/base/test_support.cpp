@@ -42,7 +42,7 @@ TEST_CASE("slots are in range and never shared by two bodies at a time") {
   }
 }
 
-TEST_CASE("an exception in a parallel loop comes out") {
+TEST_CASE("an exception in a parallel loop reaches the caller") {
   for (int threads = 1; threads <= 8; ++threads)
     CHECK_THROWS_WITH_AS(parallel_for(100, threads,
                                       [](size_t i) {
@@ -51,7 +51,7 @@ TEST_CASE("an exception in a parallel loop comes out") {
                          "item 37", std::runtime_error);
 }
 
-TEST_CASE("zero threads means the cores there are") {
+TEST_CASE("zero threads means all cores") {
   CHECK(thread_count(0) >= 1);
   CHECK(thread_count(5) == 5);
 }

@@ -5,7 +5,7 @@
 
 using namespace troffer;
 
-TEST_CASE("a star stands for any letters, or none") {
+TEST_CASE("a star matches any characters or none") {
   for (const auto& [name, pattern] : {std::pair{"panel.001", "panel*"},
                                       {"panel", "panel*"},
                                       {"panel", "panel"},

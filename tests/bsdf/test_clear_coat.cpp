@@ -99,7 +99,7 @@ TEST_CASE("white gloss under a clear coat reflects everything, and never more") 
   MESSAGE("white gloss under a clear coat: ", least, " to ", most);
 }
 
-TEST_CASE("lossless glass under a clear coat sends everything on, from both sides") {
+TEST_CASE("lossless glass under a clear coat passes on all light, from both sides") {
   double least = 2, most = 0;
   for (const float alpha : {0.0f, 0.1f, 0.3f, 1.0f})
     for (const float coat : {0.0f, 0.1f, 1.0f}) {
@@ -130,7 +130,7 @@ TEST_CASE("lossless glass under a clear coat sends everything on, from both side
   MESSAGE("lossless glass under a clear coat: ", least, " to ", most);
 }
 
-TEST_CASE("light that comes through evenly meets the coat on both sides") {
+TEST_CASE("diffusely transmitted light meets the coat on both sides") {
   for (const float coat : {0.0f, 0.3f}) {
     Material paper = clear_coated(gltf(0.4f, 0), coat, 0.8f);
     paper.diffuse_transmission.value = 0.6f;
@@ -154,7 +154,7 @@ TEST_CASE("light that comes through evenly meets the coat on both sides") {
 
 // Compares with a face's reflection and transmission at normal incidence, from outside and from
 // within.
-TEST_CASE("a sheet under coats is two faces under coats") {
+TEST_CASE("a sheet under coats equals two coated faces") {
   const Specimens s{{"face", clear_coated(glass(0), 0)},
                     {"sheet", clear_coated(glass(0, 1.5f, true), 0)},
                     {"rough coats", clear_coated(glass(0, 1.5f, true), 0.2f)}};
@@ -184,7 +184,7 @@ TEST_CASE("a sheet under coats is two faces under coats") {
   }
 }
 
-TEST_CASE("a smooth coat over a smooth metal sums what goes to and fro between them") {
+TEST_CASE("a smooth coat over a smooth metal sums the light reflected between them") {
   const Specimens s{{"copper", clear_coated(copper(0), 0)}};
   for (const float c : {0.1f, 0.4f, 0.8f, 1.0f}) {
     const double f = double(fresnel_dielectric(c, 1.5f));
@@ -197,7 +197,7 @@ TEST_CASE("a smooth coat over a smooth metal sums what goes to and fro between t
   CHECK(is_purely_delta(s.at(0)));
 }
 
-TEST_CASE("a coat over rough metal is near what walks between both surfaces bring") {
+TEST_CASE("a coat over rough metal is close to random walks between both surfaces") {
   double energy_off = 0, spread_off = 0;
   for (const float alpha : {0.1f, 0.3f})
     for (const float coat : {0.0f, 0.1f, 0.3f})
@@ -219,7 +219,7 @@ TEST_CASE("a coat over rough metal is near what walks between both surfaces brin
   MESSAGE("from walks: energy within ", energy_off, ", spread within ", spread_off);
 }
 
-TEST_CASE("a coat mirrors by its own normal, whatever the base's") {
+TEST_CASE("a coat reflects by its own normal, whatever the base's") {
   Material m = clear_coated(gltf(0.4f, 1), 0);
   m.has_coat_normal = true;
   m.coat_normal_texture = 0;

@@ -10,7 +10,7 @@
 using namespace troffer;
 using namespace troffer::test;
 
-TEST_CASE("a Bsdf towards many directions at a stroke") {
+TEST_CASE("a Bsdf evaluated for many directions at once equals single evaluations") {
   std::vector<Material> m{material_of(MaterialKind::diffuse, 0, {0.7f, 0.5f, 0.3f})};
   for (const float alpha : {0.0f, 0.002f, 0.05f, 0.3f, 1.0f}) {
     m.push_back(mirror_metal(alpha, {0.9f, 0.6f, 0.2f}));

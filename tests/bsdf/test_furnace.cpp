@@ -45,7 +45,7 @@ TEST_CASE("opaque white surfaces reflect everything") {
                   4e-3, 1.1e-3, 1u << 15);
 }
 
-TEST_CASE("a factor on what glass and coats reflect leaves all else") {
+TEST_CASE("a factor on the reflection of glass and coats changes nothing else") {
   for (const float alpha : {0.0f, 0.3f})
     for (const bool is_front : {true, false})
       for (const float c : {0.2f, 0.6f, 1.0f}) {
@@ -73,7 +73,7 @@ TEST_CASE("a factor on what glass and coats reflect leaves all else") {
 
 // The albedo is fitted to the first harmonic of the azimuth, so the error grows with the ratio of
 // widths.
-TEST_CASE("white metal with a grain reflects nearly everything, from every side") {
+TEST_CASE("anisotropic white metal reflects nearly everything, from every side") {
   const auto check = [](float alpha, float anisotropy, double loss, double gain) {
     const Specimens s{{"brushed", brushed(mirror_metal(alpha), anisotropy)}};
     double least = 2, most = 0, sum = 0;
@@ -97,7 +97,8 @@ TEST_CASE("white metal with a grain reflects nearly everything, from every side"
   check(0.1f, 0.9f, 0.15, 0.035);
 }
 
-TEST_CASE("cloth neither makes energy nor loses much of it, and its sheen is what it says") {
+TEST_CASE(
+    "cloth neither creates energy nor loses much of it, and its sheen has the given strength") {
   for (const float roughness : {0.1f, 0.3f, 0.6f, 1.0f})
     for (const float alpha : {0.0f, 0.3f, 1.0f}) {
       const Specimens s{{"white", cloth(roughness, Rgb{1}, alpha)},
@@ -113,7 +114,7 @@ TEST_CASE("cloth neither makes energy nor loses much of it, and its sheen is wha
     }
 }
 
-TEST_CASE("rough glass under a film sends everything on") {
+TEST_CASE("rough glass under a film passes on all light") {
   double least = 2, most = 0, greenest = 0, mean_off = 0;
   for (const float alpha : {0.05f, 0.1f, 0.3f, 0.5f, 1.0f})
     for (const float film : {1.2f, 1.3f, 1.8f, 2.5f})
@@ -148,7 +149,7 @@ TEST_CASE("rough glass under a film sends everything on") {
           greenest, ", mean of channels within ", mean_off);
 }
 
-TEST_CASE("a factor on a metal's reflectance is one") {
+TEST_CASE("a factor on a metal's reflectance acts as a factor") {
   for (const float alpha : {0.0f, 0.3f}) {
     const Specimens s{{"plain", copper(alpha)}, {"tinted", tinted(alpha, Rgb{0.5f})}};
     for (const float c : {0.1f, 0.5f, 1.0f}) {
@@ -161,7 +162,7 @@ TEST_CASE("a factor on a metal's reflectance is one") {
   }
 }
 
-TEST_CASE("white metal and lossless sheets under a sheen keep what it leaves") {
+TEST_CASE("white metal and lossless sheets under a sheen keep the light that it leaves") {
   double least = 2, most = 0;
   for (const float roughness : {0.1f, 0.6f, 1.0f})
     for (const float alpha : {0.0f, 0.3f, 1.0f}) {
@@ -186,7 +187,7 @@ TEST_CASE("white metal and lossless sheets under a sheen keep what it leaves") {
   MESSAGE("white metal and sheets under a sheen: ", least, " to ", most);
 }
 
-TEST_CASE("lossless glass sends everything on") {
+TEST_CASE("lossless glass passes on all light") {
   for (const float alpha : alphas) {
     const Specimens s{{"glass 1.1", glass(alpha, 1.1f)},
                       {"glass 1.5", glass(alpha)},
@@ -201,7 +202,7 @@ TEST_CASE("lossless glass sends everything on") {
   }
 }
 
-TEST_CASE("no surface makes energy, and the estimated albedo is close") {
+TEST_CASE("no surface creates energy, and the estimated albedo is close") {
   Random random(5);
   const auto u = [&] { return random.next_float(); };
   std::vector<Material> materials(400);
@@ -240,7 +241,7 @@ TEST_CASE("no surface makes energy, and the estimated albedo is close") {
   }
 }
 
-TEST_CASE("no surface makes energy under any layers, from either side") {
+TEST_CASE("no surface creates energy under any layers, from either side") {
   Random random(6);
   const auto u = [&] { return random.next_float(); };
   const auto share = [&] { return u() < 0.3f ? 0.0f : u() < 0.5f ? 1.0f : u(); };

@@ -78,7 +78,7 @@ TEST_CASE("GGX normals project to unit area") {
   }
 }
 
-TEST_CASE("albedo runs into the mirror's as alpha goes to 0") {
+TEST_CASE("albedo converges to that of the mirror as alpha goes to 0") {
   for (const float c : {0.1f, 0.5f, 0.9f}) {
     const Vec3 wo = direction(c);
     const Specimens s{{"", glass(1.1e-3f)}, {"", glass(0)}, {"", copper(1.1e-3f)}, {"", copper(0)}};
@@ -110,7 +110,7 @@ TEST_CASE("albedo runs into the mirror's as alpha goes to 0") {
   CHECK(out.wi.x == doctest::Approx(-double(direction(0.6f).x)));
 }
 
-TEST_CASE("inputs out of range are brought back") {
+TEST_CASE("inputs out of range are clamped") {
   Material m = gltf(0.3f, 0, {2, std::nanf(""), -1});
   m.ior = std::nanf("");
   m.metallic.value = 7;
@@ -122,7 +122,7 @@ TEST_CASE("inputs out of range are brought back") {
   CHECK(scattered(b, direction(0.5f)).total() <= 1);
 }
 
-TEST_CASE("roughness means what the format says, and textures drive it") {
+TEST_CASE("roughness has the meaning of the format, and textures control it") {
   Material m = copper(0.25f);
   CHECK(glossy_alpha(Specimens({{"a", m}}).at(0)) == 0.25f);
   m.roughness_meaning = RoughnessMeaning::alpha_is_sqrt;
@@ -151,7 +151,7 @@ TEST_CASE("many indices of refraction share a bounded number of tables") {
   CHECK(tables.material(199).coat == 31);
 }
 
-TEST_CASE("two equal widths are one, and the grain turns with the surface") {
+TEST_CASE("two equal widths are isotropic, and the grain turns with the surface") {
   const Vec3 wo = direction(0.6f, 0.3f), wi = direction(0.8f, 2.9f), m = normalize(wo + wi);
   const GgxWidths even{0.3f, 0.3f};
   CHECK(ggx_distribution(m, even) == doctest::Approx(double(ggx_distribution(m, 0.3f))));

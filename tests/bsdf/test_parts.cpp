@@ -54,7 +54,7 @@ float least(const Rgb& c) {
 
 }  // namespace
 
-TEST_CASE("both parts together scatter what the whole does") {
+TEST_CASE("both parts together scatter as the whole does") {
   const Specimens s = all_kinds();
   Random random(5);
   for (size_t i = 0; i < s.size(); ++i)
@@ -82,7 +82,7 @@ TEST_CASE("both parts together scatter what the whole does") {
     }
 }
 
-TEST_CASE("what a coat lets through from either direction are factors of the diffuse part") {
+TEST_CASE("the coat's transmittances in both directions are factors of the diffuse part") {
   const Specimens s = all_kinds();
   Random random(6);
   for (size_t i = 0; i < s.size(); ++i) {
@@ -98,7 +98,7 @@ TEST_CASE("what a coat lets through from either direction are factors of the dif
   }
 }
 
-TEST_CASE("each part sends on what its albedo says, and samples what it evaluates") {
+TEST_CASE("each part scatters by its albedo and samples what it evaluates") {
   const Specimens s = all_kinds();
   for (size_t i = 0; i < s.size(); ++i) {
     const Bsdf whole = s.at(i);
@@ -118,7 +118,7 @@ TEST_CASE("each part sends on what its albedo says, and samples what it evaluate
   }
 }
 
-TEST_CASE("metals and glass have no diffuse part; matte ones nothing else") {
+TEST_CASE("metals and glass have no diffuse part; matte materials have only that") {
   const Specimens s({{"mirror", mirror_metal(0)},
                      {"glass", glass(0)},
                      {"rough glass", glass(0.5f)},

@@ -36,7 +36,7 @@ double normalisation(const Bsdf& b) {
 
 // Kd .2, .5, .8 seen along the normal under a uniform sky of radiance 1, index 1.5. Expected values
 // are from Mitsuba 3's roughplastic (scalar_rgb), specular lobe included.
-TEST_CASE("rough plastic in a furnace is Mitsuba's") {
+TEST_CASE("rough plastic in a furnace agrees with Mitsuba") {
   struct Row {
     float alpha;
     bool is_nonlinear;
@@ -56,7 +56,7 @@ TEST_CASE("rough plastic in a furnace is Mitsuba's") {
   }
 }
 
-TEST_CASE("what is sampled of single facets is what albedo() says") {
+TEST_CASE("sampled single-scattering microfacets agree with albedo()") {
   for (const FacetModel facets : {FacetModel::single_ggx, FacetModel::single_beckmann})
     for (const float alpha : {0.1f, 0.4f, 1.0f})
       for (const float c : {0.3f, 0.7f, 1.0f}) {
@@ -69,7 +69,7 @@ TEST_CASE("what is sampled of single facets is what albedo() says") {
 }
 
 // White metal loses light only between facets: ∫ D G1(o) G1(i) / (4 cos o) di.
-TEST_CASE("single facets lose light, balanced ones do not") {
+TEST_CASE("single-scattering microfacets lose light, balanced ones do not") {
   for (const FacetModel facets : {FacetModel::single_ggx, FacetModel::single_beckmann}) {
     const FacetShape shape = shape_of(facets);
     for (const float alpha : {0.2f, 0.6f}) {
@@ -99,7 +99,7 @@ TEST_CASE("Beckmann's distribution covers the surface once") {
 }
 
 // Walter et al., Eq. 27, and GGX's closed form.
-TEST_CASE("shares of visible facets") {
+TEST_CASE("shares of visible microfacets") {
   CHECK(smith_g1(FacetShape::ggx, 0) == 1);
   CHECK(smith_g1(FacetShape::ggx, 3) == doctest::Approx(2.0 / 3));
   CHECK(smith_g1(FacetShape::beckmann, 0.3f) == 1);

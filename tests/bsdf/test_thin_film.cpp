@@ -43,7 +43,7 @@ Rgb spectral(double cosine, double film, double base, double thickness_nm) {
 
 }  // namespace
 
-TEST_CASE("a film's colours are those of its spectrum, by angle and thickness") {
+TEST_CASE("a film's colours follow from its spectrum, by angle and thickness") {
   const InterferenceTable table = make_interference_table();
   double off = 0, varies = 0;
   for (const float base : {1.33f, 1.5f, 2.5f, 20.0f})
@@ -71,7 +71,7 @@ TEST_CASE("a film's colours are those of its spectrum, by angle and thickness") 
   CHECK(varies > 0.1);
 }
 
-TEST_CASE("a film of no thickness, or of the base's index, is not there") {
+TEST_CASE("a film without thickness, or with the base's index, has no effect") {
   const InterferenceTable table = make_interference_table();
   ThinFilm film;
   film.share = 1;

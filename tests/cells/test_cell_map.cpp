@@ -27,7 +27,7 @@ Scene parted_floor() {
 
 }  // namespace
 
-TEST_CASE("hits in one voxel share a cell, those of another side, plane or distance do not") {
+TEST_CASE("hits in one voxel share a cell unless side, plane or distance differ") {
   Scene s;
   add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
   const Tracer tracer(s);
@@ -49,7 +49,7 @@ TEST_CASE("hits in one voxel share a cell, those of another side, plane or dista
   CHECK(map.find(on_floor(0.3f, 0.2f), 5) == cell);
 }
 
-TEST_CASE("what comes from far away comes from larger cells, the same to whoever is as far") {
+TEST_CASE("distant hits use larger cells, the same for all equally distant receivers") {
   Scene s;
   add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
   const Tracer tracer(s);
@@ -84,7 +84,7 @@ TEST_CASE("what comes from far away comes from larger cells, the same to whoever
   CHECK(far.find_from_afar(on_floor(0.5f, 0.5f)) == only);
 }
 
-TEST_CASE("where light is uneven there are halves of cells, and halves of them, up to a limit") {
+TEST_CASE("cells are halved repeatedly where light is uneven, up to a limit") {
   Scene s;
   add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
   const Tracer tracer(s);
@@ -120,7 +120,7 @@ TEST_CASE("where light is uneven there are halves of cells, and halves of them, 
   CHECK(width(0.001f) == doctest::Approx(1 / 64.0).epsilon(0.03));
 }
 
-TEST_CASE("cells keep more of the hits that a picture asks for") {
+TEST_CASE("cells keep more of the hits that the picture needs") {
   Scene s;
   add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
   const Tracer tracer(s);
@@ -140,7 +140,7 @@ TEST_CASE("cells keep more of the hits that a picture asks for") {
   CHECK(map.hits(asked).empty());
 }
 
-TEST_CASE("a wall parts the cells of the floor that it stands on, wherever it crosses them") {
+TEST_CASE("a wall divides the cells of the floor that it stands on, wherever it crosses them") {
   const Scene scene = parted_floor();
   const Tracer tracer(scene);
   for (const float size : {0.05f, 0.17f, 0.4f, 1.0f}) {
@@ -163,7 +163,7 @@ TEST_CASE("a wall parts the cells of the floor that it stands on, wherever it cr
   }
 }
 
-TEST_CASE("cells of a sphere: few, and with normals that are near each other") {
+TEST_CASE("cells of a sphere are few and have similar normals") {
   Scene s;
   s.spheres.push_back({{0, 0, 0}, 1, false, add_diffuse(s, Rgb{0.5f}), no_light});
   const Tracer tracer(s);
@@ -179,7 +179,7 @@ TEST_CASE("cells of a sphere: few, and with normals that are near each other") {
   CHECK(map.bytes() > map.size() * sizeof(CellHit));
 }
 
-TEST_CASE("cells of slats are narrow, those of a floor and at its edge are not") {
+TEST_CASE("cells of slats are narrow; cells of a floor, even at its edge, are not") {
   constexpr float size = 0.1f;
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
@@ -236,7 +236,7 @@ TEST_CASE("cells of slats are narrow, those of a floor and at its edge are not")
   CHECK_FALSE(none.would_be_narrow(hit, 5));
 }
 
-TEST_CASE("voxels full of leaves do not make a cell of every leaf") {
+TEST_CASE("voxels full of leaves do not get one cell per leaf") {
   Scene s;
   add_diffuse(s, Rgb{0.5f});
   const Tracer tracer(s);

@@ -28,7 +28,7 @@ CellRows random_rows(size_t cells, float reflectance) {
 
 }  // namespace
 
-TEST_CASE("two cells that see half of each other") {
+TEST_CASE("two cells that see each other reach the exact solution") {
   CellRows rows;
   const std::vector<RowEntry> to_one{{1, Rgb{0.5f}}};
   rows.add({0, 2, 0, false, Rgb{0}}, to_one);
@@ -42,7 +42,7 @@ TEST_CASE("two cells that see half of each other") {
   CHECK(double(light.irradiance[1].r) == doctest::Approx(1 + 0.4 * red).epsilon(1e-5));
 }
 
-TEST_CASE("a room of reflectance .95 and more keeps its light, and is solved in few rounds") {
+TEST_CASE("a room with reflectance .95 or more keeps its light and is solved in few iterations") {
   for (const float rho : {0.5f, 0.95f, 0.99f}) {
     const CellRows rows = random_rows(2000, rho);
     const std::vector<Rgb> direct(2000, Rgb{1});
@@ -58,7 +58,7 @@ TEST_CASE("a room of reflectance .95 and more keeps its light, and is solved in 
 // With plain bounces, E - .5 would fall by .001 per bounce, and the difference between the two
 // rooms by .003. That is thousands of bounces, which a common factor for all cells does not
 // shorten.
-TEST_CASE("two bright rooms with a chink between them are solved in few rounds") {
+TEST_CASE("two bright rooms connected by a narrow gap are solved in few iterations") {
   constexpr uint32_t n = 400;
   constexpr double reflectance = 0.999, chink = 0.001;
   CellRows rows;
@@ -125,7 +125,7 @@ TEST_CASE("importance is the adjoint of light") {
   for (size_t i = 0; i < n; ++i) CHECK(anew[i] == doctest::Approx(y[i]).epsilon(2e-3));
 }
 
-TEST_CASE("the same light for any number of threads") {
+TEST_CASE("the solution is the same for any number of threads") {
   const CellRows rows = random_rows(5000, 0.8f);
   const std::vector<Rgb> direct(5000, Rgb{1, 2, 3});
   const std::vector<float> differences(5000, 0.1f);
@@ -135,7 +135,7 @@ TEST_CASE("the same light for any number of threads") {
   CHECK(one.half_difference == many.half_difference);
 }
 
-TEST_CASE("what halves differ by goes on to the cells that see it") {
+TEST_CASE("the difference of half solutions propagates to the cells that see it") {
   // Both halves of the first cell's rays see the second cell alike.
   CellRows rows;
   const std::vector<RowEntry> entries(4, RowEntry{1, Rgb{0.5f}});
@@ -147,7 +147,7 @@ TEST_CASE("what halves differ by goes on to the cells that see it") {
   CHECK(light.half_difference[0] == doctest::Approx(0.1f));
 }
 
-TEST_CASE("draws of noise: every cell errs by itself, and so do its rays and its hits") {
+TEST_CASE("noise draws: errors of cells, of their rays and of their hits are independent") {
   constexpr uint32_t cells = 1000;
   CellRows rows;
   // The first cell sees all others, each by one ray; these see nothing.
@@ -179,7 +179,7 @@ TEST_CASE("draws of noise: every cell errs by itself, and so do its rays and its
     CHECK(std::abs(d) == doctest::Approx(1 + 0.25 + 0.0625 + 0.015625).epsilon(1e-3));
 }
 
-TEST_CASE("importance stays a number where rows of somebody's file make light grow without end") {
+TEST_CASE("importance stays finite if rows from a file amplify light endlessly") {
   CellRows rows;
   constexpr uint32_t cells = 4;
   for (uint32_t c = 0; c < cells; ++c)
@@ -232,7 +232,7 @@ CellRows rows_that_see_few(uint32_t rooms, uint32_t cells_of_room) {
 
 }  // namespace
 
-TEST_CASE("rays by whose chance cells would amplify their own light do not") {
+TEST_CASE("random rays that would let cells amplify their own light do not") {
   const size_t n = 1000;
   const CellRows rows = rows_with_creases(n);
   const std::vector<float> y = rows.importance(std::vector<float>(n, 1), {}, 100000);
@@ -246,7 +246,8 @@ TEST_CASE("rays by whose chance cells would amplify their own light do not") {
   }
 }
 
-TEST_CASE("rows of which a few cells are seen by nearly all have a balance all the same") {
+TEST_CASE(
+    "rows with a few cells that nearly all others see are still solved with an energy balance") {
   const uint32_t rooms = 40, cells_of_room = 100;
   const size_t n = size_t(rooms) * cells_of_room;
   const CellRows rows = rows_that_see_few(rooms, cells_of_room);

@@ -68,7 +68,7 @@ std::string refusal(const std::vector<uint8_t>& bytes, uint64_t scene, const Tra
 
 }  // namespace
 
-TEST_CASE("kept cells come back the same: the same bytes, and every hit finds its cell") {
+TEST_CASE("stored cells are restored exactly: same bytes, and every hit finds its cell") {
   const Scene scene = floor_scene();
   const Tracer tracer(scene);
   const CellStore store = random_store(tracer, 3000);
@@ -94,7 +94,7 @@ TEST_CASE("kept cells come back the same: the same bytes, and every hit finds it
   CHECK(a.irradiance == b.irradiance);
 }
 
-TEST_CASE("kept cells get no more hits, new ones beside them do") {
+TEST_CASE("stored cells get no more hits, new cells beside them do") {
   const Scene scene = floor_scene();
   const Tracer tracer(scene);
   CellMap map(tracer, 1);
@@ -130,7 +130,7 @@ TEST_CASE("damaged files of cells, and those of other scenes, are refused") {
   }
 }
 
-TEST_CASE("values that no cells have are refused, though the file is whole") {
+TEST_CASE("impossible values are refused even if the file is complete") {
   const Scene scene = floor_scene();
   const Tracer tracer(scene);
   const float nan = std::nanf("");

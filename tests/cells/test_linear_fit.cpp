@@ -7,7 +7,7 @@
 
 using namespace troffer;
 
-TEST_CASE("a linear fit gives a slope's value back exactly, also at its border") {
+TEST_CASE("a linear fit reproduces a slope exactly, also at its border") {
   for (const float from : {-1.0f, 0.0f}) {
     LinearFit fit;
     for (float u = from; u <= 1; u += 0.25f)
@@ -23,7 +23,7 @@ TEST_CASE("a linear fit gives a slope's value back exactly, also at its border")
   }
 }
 
-TEST_CASE("a linear fit tells its own variance") {
+TEST_CASE("a linear fit estimates its own variance") {
   Random random(3);
   const auto noise = [&] { return std::sqrt(12.0f) * (random.next_float() - 0.5f); };
   for (const float from : {-1.0f, 0.0f}) {
@@ -49,7 +49,7 @@ TEST_CASE("a linear fit tells its own variance") {
   }
 }
 
-TEST_CASE("of few neighbours the mean is taken") {
+TEST_CASE("with few neighbours the fit is their mean") {
   LinearFit fit;
   FittedLight light;
   CHECK(!fit.solve(light));

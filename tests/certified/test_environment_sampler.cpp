@@ -122,7 +122,7 @@ Estimates estimates_of(const Points& p, const EnvironmentSampler::Chances& chanc
 
 }  // namespace
 
-TEST_CASE("sixty-four points of a sky say what arrives where nothing hides it") {
+TEST_CASE("64 points of a sky give the unoccluded light") {
   for (const Kind kind : {Kind::overcast, Kind::clear, Kind::image}) {
     const Points p(kind);
     for (const Vec3& normal : {Vec3{0, 0, 1}, normalize(Vec3{0.4f, -0.7f, 0.6f})}) {
@@ -142,7 +142,7 @@ TEST_CASE("sixty-four points of a sky say what arrives where nothing hides it") 
 
 // Precomputed chances must serve every normal in their neighbourhood: no visible part has zero
 // chance, and the error hardly grows.
-TEST_CASE("chances for normals about a receiver's leave none of its light out") {
+TEST_CASE("probabilities for normals near a receiver's leave none of its light out") {
   for (const Kind kind : {Kind::overcast, Kind::clear, Kind::image}) {
     const Points p(kind);
     Random random(7 + uint64_t(kind));
@@ -173,7 +173,7 @@ TEST_CASE("chances for normals about a receiver's leave none of its light out") 
 
 // A dim part with a few bright texels must not be sampled by its typical luminance. Parts are cut
 // until they are even, so samples have similar values with or without a sun.
-TEST_CASE("no point of an image with a small sun counts for much more than all light") {
+TEST_CASE("no point of an image with a small sun has a weight far above all light") {
   const Points p(Kind::sunny);
   Random random(11);
   for (const Vec3& normal : {Vec3{0, 0, 1}, normalize(Vec3{0.3f, 0.5f, 0.4f})}) {

@@ -38,7 +38,7 @@ StagedDirect one_then_two() {
 
 }  // namespace
 
-TEST_CASE("staged direct light: first hits by the first, what gloss shows by the other") {
+TEST_CASE("staged direct light: first hits use the first integrator, hits after gloss the second") {
   const StagedDirect direct = one_then_two();
   const auto scratch = direct.make_scratch();
   Counters counters;
@@ -62,7 +62,7 @@ TEST_CASE("staged direct light: first hits by the first, what gloss shows by the
   }
 }
 
-TEST_CASE("staged direct light: a pixel's further samples are the other's") {
+TEST_CASE("staged direct light: further samples of a pixel use the second integrator") {
   const StagedDirect direct = one_then_two();
   const auto scratch = direct.make_scratch();
   Counters counters;
@@ -85,7 +85,8 @@ TEST_CASE("staged direct light: a pixel's further samples are the other's") {
   CHECK(seen.weights == std::vector<float>{1, 2, 2});
 }
 
-TEST_CASE("staged direct light: emission competes with the samples of the vertex before") {
+TEST_CASE(
+    "staged direct light: emission is weighted against the light samples of the previous vertex") {
   const StagedDirect direct = one_then_two();
   std::vector<Walk> walks(4);
   SeenEmission seen;

@@ -12,7 +12,7 @@
 
 using namespace troffer;
 
-TEST_CASE("the numbers of a comparison, worked out by hand") {
+TEST_CASE("the numbers of a comparison agree with a calculation by hand") {
   Image image(2, 1), reference(2, 1);
   image.at(0, 0) = {1, 0, 0};
   image.at(1, 0) = {0.5f, 0.5f, 4};
@@ -30,7 +30,7 @@ TEST_CASE("the numbers of a comparison, worked out by hand") {
   CHECK(c.non_finite_pixels == 0);
 }
 
-TEST_CASE("equal images differ in nothing") {
+TEST_CASE("equal images have no differences") {
   Image image(20, 10);
   Random random(1);
   for (Rgb& p : image.pixels) p = {random.next_float(), random.next_float(), random.next_float()};
@@ -73,7 +73,7 @@ TEST_CASE("a black reference") {
   CHECK(compare_images(Image(2, 2), Image(2, 2), "a").relative_rmse == 0);
 }
 
-TEST_CASE("threads do not change a bit") {
+TEST_CASE("the number of threads does not change a bit") {
   Random random(2);
   Image a(70, 50), b(70, 50);
   for (Image* image : {&a, &b})
@@ -85,7 +85,7 @@ TEST_CASE("threads do not change a bit") {
   CHECK(one.average_difference == three.average_difference);
 }
 
-TEST_CASE("the reference pictures, compared with each other") {
+TEST_CASE("the reference pictures agree with each other") {
   const std::string folder = std::string(TROFFER_SOURCE_DIR) + "/scenes/references/";
   const Image direct = read_image(folder + "kj92room_direct.exr");
   const Image full = read_image(folder + "kj92room_full.exr");
@@ -96,7 +96,7 @@ TEST_CASE("the reference pictures, compared with each other") {
   CHECK(c.flip < 0.6);
 }
 
-TEST_CASE("magma runs from black to pale yellow, ever lighter") {
+TEST_CASE("the magma colour map gets lighter from black to pale yellow") {
   const auto bytes = [](float v) { return srgb8(Image(1, 1, magma(v))); };
   CHECK(bytes(0) == std::vector<uint8_t>{0, 0, 4});
   CHECK(bytes(0.5f) == std::vector<uint8_t>{181, 54, 122});

@@ -248,7 +248,7 @@ TEST_CASE("FLIP is 0 on equal images, symmetric and within [0,1]") {
   for (const float e : flip_errors(a, b, 0.1)) CHECK(std::isfinite(e));
 }
 
-TEST_CASE("a visible change weighs more than noise that the eye averages") {
+TEST_CASE("a visible change counts more than noise that the eye averages") {
   const Image grey(64, 64, Rgb{0.5f});
   Image dithered = grey, shifted = grey;
   for (int y = 0; y < 64; ++y)

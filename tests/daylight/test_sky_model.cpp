@@ -35,7 +35,7 @@ double illuminance(const F& luminance, double tilt) {
 
 }  // namespace
 
-TEST_CASE("the horizontal integral of every general sky is that of quadrature") {
+TEST_CASE("the horizontal integral of every general sky agrees with quadrature") {
   for (int type = 1; type <= 15; ++type)
     for (const double sun_zenith_deg : {20.0, 60.0, 85.0}) {
       const SkyShape s = cie_sky(type);
@@ -59,7 +59,8 @@ TEST_CASE("the horizontal integral of every general sky is that of quadrature") 
     }
 }
 
-TEST_CASE("clear air by Linke's turbidity: worked by hand from the published formulas") {
+TEST_CASE(
+    "clear skies by Linke turbidity agree with a calculation by hand from the published formulas") {
   // T = 3 at 60 degrees: air mass 1.1540, Rayleigh thickness .11774, exp(-.8662 T m d) = .7025
   const Irradiance high = clear_irradiance(3, 60, 1);
   CHECK(high.direct_normal == doctest::Approx(1367 * 0.7026).epsilon(1e-3));
@@ -76,7 +77,7 @@ TEST_CASE("clear air by Linke's turbidity: worked by hand from the published for
         clear_irradiance(2, 40, 1).diffuse_horizontal);
 }
 
-TEST_CASE("what the standard says of its skies") {
+TEST_CASE("skies have the properties that the standard states") {
   // Type 5 is uniform: pi. Type 1, overcast: the zenith is about three times as bright as the
   // horizon.
   CHECK(horizontal_integral(cie_sky(5), 0.3) == doctest::Approx(pi).epsilon(1e-5));
@@ -88,7 +89,7 @@ TEST_CASE("what the standard says of its skies") {
   CHECK(zenith / horizontal_integral(overcast, 0) == doctest::Approx(9 / (7 * pi)).epsilon(0.02));
 }
 
-TEST_CASE("a sky brings the illuminance that it is asked for, on all sides what quadrature says") {
+TEST_CASE("a sky gives the requested illuminance, and on all sides that of quadrature") {
   for (int type = 1; type <= 15; ++type) {
     Scene scene;
     scene.is_photometric = true;
@@ -151,8 +152,7 @@ TEST_CASE("a sun and a ground add up") {
   CHECK(double(to_sun.z) == doctest::Approx(-std::cos(pi / 6) * std::cos(rad_from_deg(200.0))));
 }
 
-TEST_CASE(
-    "a compass: north where it is said to be, east to its right, mirrored where the world is") {
+TEST_CASE("north is where it is set, east to its right, mirrored in mirrored worlds") {
   const Compass z = make_compass({0, 0, 2}, 0, false);
   CHECK(length(z.north - Vec3d{0, 1, 0}) < 1e-12);
   CHECK(length(z.east - Vec3d{1, 0, 0}) < 1e-12);
@@ -162,7 +162,7 @@ TEST_CASE(
   CHECK(length(y.east - Vec3d{0, 0, 1}) < 1e-12);
 }
 
-TEST_CASE("Perez' skies: overcast ones brighten upwards, clear ones towards the sun") {
+TEST_CASE("Perez skies: overcast ones brighten upwards, clear ones towards the sun") {
   const double zs = rad_from_deg(50.0);
   const PerezSky overcast = perez_sky(0, 150, zs, 1), clear = perez_sky(850, 90, zs, 1);
   const auto lum = [](const SkyShape& s, double z, double azimuth, double sun) {

@@ -33,7 +33,7 @@ std::set<std::string> names(const TempFolder& folder) {
 
 }  // namespace
 
-TEST_CASE("data of a file gets names that the file before it did not mention") {
+TEST_CASE("data of a new file gets names that the previous file does not mention") {
   const TempFolder folder;
   const std::string path = folder.path("s.gltf");
   const auto write = [&](const std::string& data) {
@@ -59,7 +59,7 @@ TEST_CASE("data of a file gets names that the file before it did not mention") {
   CHECK(names(folder).size() == 1);  // files that only the old scene used are gone
 }
 
-TEST_CASE("what another file of the same folder uses stays") {
+TEST_CASE("data that another file of the same folder uses is kept") {
   const TempFolder folder;
   {
     OutputFolder files(folder.path("s.pbrt"));

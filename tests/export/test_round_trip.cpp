@@ -160,7 +160,7 @@ TEST_CASE("lights, cameras and materials survive in every format") {
   }
 }
 
-TEST_CASE("a file of pbrt's that is written is read as exactly the same scene") {
+TEST_CASE("a pbrt file that is written again is read as exactly the same scene") {
   const TempFolder folder;
   const Scene scene = import_scene(folder.write("in.pbrt", world));
   CHECK(export_scene(scene, folder.path("out.pbrt")).empty());
@@ -177,7 +177,7 @@ TEST_CASE("a file of pbrt's that is written is read as exactly the same scene") 
   CHECK(metal.roughness.value == 0.5f);  // the GGX width itself
 }
 
-TEST_CASE("a portal stays where it is, in scenes far from the origin too") {
+TEST_CASE("a portal keeps its place, also in scenes far from the origin") {
   const TempFolder folder;
   const std::string text =
       "WorldBegin\nTranslate 40000 0 0\n"
@@ -193,7 +193,7 @@ TEST_CASE("a portal stays where it is, in scenes far from the origin too") {
   CHECK(length(corner - Vec3d{40001, 3, 2}) < 1e-3);
 }
 
-TEST_CASE("textures, masks and scenes far from the origin survive") {
+TEST_CASE("textures, masks and scenes far from the origin survive a round trip") {
   const TempFolder folder;
   std::string pfm = "PF\n2 1\n-1.0\n";
   for (const float v : {0.25f, 0.5f, 0.75f, 1.0f, 0.5f, 0.0f})
@@ -230,7 +230,7 @@ TEST_CASE("textures, masks and scenes far from the origin survive") {
 }
 
 TEST_CASE(
-    "two sets of texture coordinates, sheen and grain survive in glTF, and are told of else") {
+    "two sets of texture coordinates, sheen and anisotropy survive in glTF; other formats warn") {
   const TempFolder folder;
   Scene scene;
   const Texture t = two_texels(0, 255);
@@ -270,7 +270,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("clear coats and thin films survive where the format has them") {
+TEST_CASE("clear coats and thin films survive in formats that have them") {
   const TempFolder folder;
   Scene scene;
   const Texture t = two_texels(51, 255);
@@ -311,7 +311,7 @@ TEST_CASE("clear coats and thin films survive where the format has them") {
   scene.meshes[1].material = 1;
   scene.meshes[2].material = 2;
   const std::vector<Warning> told = export_scene(scene, folder.path("out.glb"));
-  CHECK(has_warning(told, "light does not bend"));
+  CHECK(has_warning(told, "without refraction in the coat"));
   const Scene back = import_scene(folder.path("out.glb"));
   CHECK(back.warnings.total() == 0);
   const Material& n = back.materials[back.meshes[0].material];
@@ -331,7 +331,7 @@ TEST_CASE("clear coats and thin films survive where the format has them") {
   CHECK(g.coat_roughness.value == doctest::Approx(0.2));
   CHECK(has_warning(export_scene(scene, folder.path("out.pbrt")), "anything but metal"));
   // pbrt keeps the layer itself, and glTF's metal gets a layer.
-  CHECK(has_warning(export_scene(scene, folder.path("out.pbrt")), "into which light bends"));
+  CHECK(has_warning(export_scene(scene, folder.path("out.pbrt")), "which refract light"));
   const Scene pbrt = import_scene(folder.path("out.pbrt"));
   REQUIRE(pbrt.materials.size() >= 2);
   const Material& v = pbrt.materials[pbrt.meshes[1].material];
@@ -346,7 +346,7 @@ TEST_CASE("clear coats and thin films survive where the format has them") {
   CHECK(pbrt.materials[pbrt.meshes[0].material].coat.value == 1);
 }
 
-TEST_CASE("what glass absorbs survives, and what is lost is told") {
+TEST_CASE("absorption of glass survives, and losses cause warnings") {
   const TempFolder folder;
   const Scene scene = import_scene(folder.write(
       "in.pbrt",
@@ -401,7 +401,7 @@ TEST_CASE("a measured luminaire keeps its flux") {
   }
 }
 
-TEST_CASE("only endings that can be written are taken, and folders that are there") {
+TEST_CASE("only supported endings and existing folders are accepted") {
   CHECK_THROWS_AS(check_scene_format("a.obj"), UsageError);
   const TempFolder folder;
   CHECK_THROWS_AS(export_scene(Scene(), folder.path("none/a.glb")), EnvironmentError);

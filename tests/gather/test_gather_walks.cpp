@@ -20,7 +20,7 @@ using namespace troffer::test;
 // A coated place keeps ∫ L cos g / ḡ, with ḡ the cosine-weighted mean of g. Under a uniform sky of
 // radiance 1 it is π, as without a coat. Light samples have no competition, because walks that go
 // on from here do not count emission.
-TEST_CASE("draws of sources bring coated surfaces all of their light") {
+TEST_CASE("sampled sources give coated surfaces all of their light") {
   for (const bool is_coated : {false, true}) {
     CAPTURE(is_coated);
     Scene s;
@@ -109,7 +109,7 @@ Gathered gathered(const PreparedScene& scene, bool is_of_rows) {
 
 // Roulette sends a light sample and a continued ray only sometimes. Rays of cells continue more
 // often, and so do those of narrow gloss.
-TEST_CASE("gather rays bring what gloss sends, though few go on from it") {
+TEST_CASE("gather rays include the light of gloss, although few continue from it") {
   for (const float alpha : {0.01f, 0.1f, 0.25f, 0.5f, 0.9f})
     for (const bool is_of_rows : {false, true}) {
       CAPTURE(alpha);
@@ -130,7 +130,7 @@ TEST_CASE("gather rays bring what gloss sends, though few go on from it") {
 }
 
 // albedo() does not cover clear coats, so roulette cannot be based on it.
-TEST_CASE("gather rays bring what a clear coat over black sends") {
+TEST_CASE("gather rays include the light of a clear coat over black") {
   for (const Cover cover : {Cover::clear_coat, Cover::smooth_clear_coat}) {
     CAPTURE(int(cover));
     const PreparedScene scene(black_gloss(0.5f, cover));
@@ -152,7 +152,7 @@ TEST_CASE("gather rays bring what a clear coat over black sends") {
 
 // Images have texels for other surfaces, or for none. Here each small tile of a floor shows the
 // white middle of an image that is black around it.
-TEST_CASE("gather rays see no texels that their surface does not show") {
+TEST_CASE("gather rays see no texels outside of their surface's part of an image") {
   Scene s;
   s.textures.push_back(grey_image(
       64, 64, [](int x, int y) { return x >= 16 && x < 48 && y >= 16 && y < 48 ? 0.8f : 0.0f; }));
@@ -184,7 +184,7 @@ TEST_CASE("gather rays see no texels that their surface does not show") {
 
 // The result does not depend on how many rays there are. Some rays carry nothing and are not
 // followed.
-TEST_CASE("rays that gather together see what each sees by itself") {
+TEST_CASE("gather rays that are traced together see what each sees alone") {
   Scene s;
   Material m;
   m.base_color.value = Rgb{0.5f};
@@ -234,7 +234,7 @@ TEST_CASE("rays that gather together see what each sees by itself") {
   }
 }
 
-TEST_CASE("one of the arrivals that a walk has split into stands for all of them") {
+TEST_CASE("one arrival of a split walk can represent all of them") {
   std::array<double, 3> sums{};
   double alone = 0;
   constexpr uint32_t walks = 1 << 14;

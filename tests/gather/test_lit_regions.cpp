@@ -85,7 +85,7 @@ Vec2 number(Random& random) {
 
 }  // namespace
 
-TEST_CASE("no bright places where it is evenly bright") {
+TEST_CASE("no lit regions where light is uniform") {
   const Scene scene = nothing_in_the_way();
   const Tracer tracer(scene);
   const Floor even(1.5f), nothing(0);
@@ -103,7 +103,7 @@ TEST_CASE("no bright places where it is evenly bright") {
   }
 }
 
-TEST_CASE("rays aimed at bright places have the mean of rays by cosine, and less noise") {
+TEST_CASE("rays guided to lit regions have the mean of cosine-distributed rays, and less noise") {
   const Scene scene = nothing_in_the_way();
   const Tracer tracer(scene);
   constexpr float brightness = 500;
@@ -142,7 +142,7 @@ TEST_CASE("rays aimed at bright places have the mean of rays by cosine, and less
   CHECK(fewest < 0.1);
 }
 
-TEST_CASE("what the first rays bring tells later ones where to look") {
+TEST_CASE("the first rays guide later ones") {
   const Scene scene = [] {  // a sheet between the bright square and half of the room
     Scene s;
     add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-1, -3, 0}, {-1, 3, 0}, {-1, 3, 3}, {-1, -3, 3}});
@@ -184,7 +184,8 @@ TEST_CASE("what the first rays bring tells later ones where to look") {
   CHECK(told.rest == doctest::Approx(100));
 }
 
-TEST_CASE("sensors of a patch share an aim: the mean of rays by cosine, and less noise") {
+TEST_CASE(
+    "sensors of a patch share a distribution: same mean as cosine-distributed rays, less noise") {
   const Scene scene = nothing_in_the_way();
   const Tracer tracer(scene);
   constexpr float brightness = 500;
@@ -228,7 +229,7 @@ TEST_CASE("sensors of a patch share an aim: the mean of rays by cosine, and less
   }
 }
 
-TEST_CASE("a sensor by itself is aimed for as before, whatever was asked for before it") {
+TEST_CASE("the distribution of a single sensor does not depend on earlier requests") {
   const Scene scene = nothing_in_the_way();
   const Tracer tracer(scene);
   const Floor floor(500);

@@ -48,7 +48,7 @@ PointsSeen points_that_see_all(size_t points, uint32_t rays_of_set, uint64_t see
 
 }  // namespace
 
-TEST_CASE("points that see all cells err as their mean does, by however few rays that is found") {
+TEST_CASE("the error of points that see all cells is that of their mean, with any number of rays") {
   for (const uint32_t rays : {8u, 256u, 1024u}) {
     CAPTURE(rays);
     Random random(rays);
@@ -72,7 +72,7 @@ TEST_CASE("points that see all cells err as their mean does, by however few rays
   }
 }
 
-TEST_CASE("points gather by as many rays as bring them to the error, within what is allowed") {
+TEST_CASE("points get as many gather rays as the asked error needs, within limits") {
   std::vector<Rgb> light(cells);
   for (size_t c = 0; c < cells; ++c) light[c] = Rgb{c % 2 == 0 ? 0.0f : 2.0f};
   CellRows rows;
@@ -90,7 +90,7 @@ TEST_CASE("points gather by as many rays as bring them to the error, within what
   CHECK(rays(0.001) == 4096);
 }
 
-TEST_CASE("dark points say nothing of noise") {
+TEST_CASE("dark points do not count for noise") {
   Random random(5);
   std::vector<Rgb> light;
   const CellRows rows = cells_of_chance(random, light);
@@ -102,7 +102,7 @@ TEST_CASE("dark points say nothing of noise") {
   CHECK(times_as_many_rays(noise, 1000) == 1);
 }
 
-TEST_CASE("cells get as many rays as leave the least variance for the time") {
+TEST_CASE("the number of rays per cell minimizes the variance for the time") {
   const PointsNoise noise{.by_rows = 4e-5, .by_hits = 1e-6, .by_gather = 6e-6, .gather_rays = 3e6};
   constexpr double rays = 1e5;
   const double best = times_as_many_rays(noise, rays);

@@ -31,7 +31,8 @@ void add_sheet(Scene& s, float x0, float x1, float z) {
 
 }  // namespace
 
-TEST_CASE("cells with a close cover above a part of them are uneven where somebody looks") {
+TEST_CASE(
+    "cells with a close cover above a part of them count as uneven where the view needs them") {
   const auto is_uneven = [](float height, float x, float x0, float x1, bool is_asked = true) {
     Scene s = floor_of_a_metre();
     add_sheet(s, x0, x1, height);
@@ -47,7 +48,7 @@ TEST_CASE("cells with a close cover above a part of them are uneven where somebo
   CHECK(!is_uneven(0.01f, 0.4f, 0.5f, 1));         // too low for any light below it
 }
 
-TEST_CASE("what stands on a surface does not cover it") {
+TEST_CASE("an object that stands on a surface does not cover it") {
   Scene s = floor_of_a_metre();
   add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {0.5f, 0, 0}, {1, 1, 0.08f});
   const PreparedScene scene(std::move(s));

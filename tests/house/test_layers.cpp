@@ -81,7 +81,7 @@ Arrows arrows_of(const Layers& layers) {
 
 }  // namespace
 
-TEST_CASE("every room of src/ has a row and every row a room") {
+TEST_CASE("every room of src/ has a row in layers.txt, and every row a room") {
   const Layers layers = read_layers();
   std::set<std::string> rooms;
   for (const auto& entry : fs::directory_iterator(root / "src"))
@@ -89,7 +89,7 @@ TEST_CASE("every room of src/ has a row and every row a room") {
   CHECK(rooms == std::set<std::string>(layers.order.begin(), layers.order.end()));
 }
 
-TEST_CASE("stairs go one way") {
+TEST_CASE("rooms use only rooms listed before them") {
   const Layers layers = read_layers();
   std::set<std::string> below;
   for (const std::string& room : layers.order) {
@@ -113,7 +113,7 @@ TEST_CASE("rooms include only what their rows name, and all of that") {
                     ", which no file of it includes");
 }
 
-TEST_CASE("one door per dependency") {
+TEST_CASE("each external library is included only in its own rooms") {
   const std::map<std::string, std::set<std::string>> doors{
       {"embree3/", {"trace"}},  {"tbb/", {"base"}},
       {"OpenEXR/", {"image"}},  {"Imf", {"image"}},

@@ -38,7 +38,7 @@ std::string first_include(const fs::path& file) {
 
 }  // namespace
 
-TEST_CASE("every header stands at the head of its own .cpp, or is compiled by the test `headers`") {
+TEST_CASE("every header comes first in its own .cpp, or is compiled by the test `headers`") {
   size_t own = 0, alone = 0;
   for (const fs::path& header : files_below(root / "src", {".h"})) {
     const std::string name = fs::relative(header, root / "src").generic_string();
@@ -72,7 +72,7 @@ TEST_CASE("tests skip nothing that the repository holds") {
   }
 }
 
-TEST_CASE("no test depends on the clock on the wall: no limit under twenty minutes, no stopwatch") {
+TEST_CASE("no test depends on wall-clock time: no limit under twenty minutes, no stopwatch") {
   size_t limits = 0;
   const std::regex limit("TIMEOUT \"?([0-9]+)");
   for (const char* folder : {"tests", "bench"}) {

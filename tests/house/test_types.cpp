@@ -128,7 +128,7 @@ void check_that_each_has_one_file(const FilesOf& files_of) {
 
 }  // namespace
 
-TEST_CASE("definitions are found where others see them, and nowhere else") {
+TEST_CASE("definitions are found only where other files can see them") {
   const Definitions d = definitions_in(code_of(
       "// struct Comment {\n#define S struct Macro {\n"
       "namespace a {\nnamespace {\nstruct Hidden { int x; };\n}\n"
@@ -140,7 +140,7 @@ TEST_CASE("definitions are found where others see them, and nowhere else") {
   CHECK(d.functions == std::vector<std::string>{"a::inline int twice(int x)"});
 }
 
-TEST_CASE("no two types of the program have one name, and no two inline functions one head") {
+TEST_CASE("no two types share a name, and no two inline functions a signature") {
   FilesOf types, functions;
   for (const auto& entry : fs::recursive_directory_iterator(root / "src")) {
     const std::string ending = entry.path().extension().string();

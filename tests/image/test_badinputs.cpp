@@ -71,7 +71,7 @@ std::vector<std::pair<std::string, std::vector<uint8_t>>> small_files() {
 
 }  // namespace
 
-TEST_CASE("the collection of broken files behaves as its manifest says") {
+TEST_CASE("broken files behave as the manifest of the collection states") {
   std::ifstream manifest(shared + "badinputs/manifest.json");
   if (!manifest) {
     MESSAGE("skipped: no ../shared/badinputs");
@@ -102,7 +102,7 @@ TEST_CASE("the collection of broken files behaves as its manifest says") {
   CHECK(peak_memory_mb() < 1024);
 }
 
-TEST_CASE("PNGSuite: an interlaced file shows what its plain twin shows") {
+TEST_CASE("PNGSuite: interlaced files equal their plain counterparts") {
   const std::filesystem::path folder = shared + "badinputs/png/pngsuite";
   if (!std::filesystem::exists(folder)) {
     MESSAGE("skipped: no ../shared/badinputs");
@@ -122,7 +122,7 @@ TEST_CASE("PNGSuite: an interlaced file shows what its plain twin shows") {
   CHECK(pairs > 0);
 }
 
-TEST_CASE("no truncated file passes for whole") {
+TEST_CASE("no truncated file is accepted as complete") {
   for (const auto& [name, bytes] : small_files()) {
     REQUIRE(outcome_of(bytes) == Outcome::loads);
     for (size_t n = 0; n < bytes.size(); ++n) {

@@ -55,7 +55,7 @@ const BmpBytes bmp_colours{1, 2, 3, 0, 4, 5, 6, 0};  // blue green red, padding
 
 }  // namespace
 
-TEST_CASE("BMP: colours from below and from above, rows of whole words") {
+TEST_CASE("BMP: rows from bottom and from top, padded to whole words") {
   Bmp b{.body = {1, 2, 3, 4, 5, 6, 0, 0, 7, 8, 9, 10, 11, 12, 0, 0}};
   const Raster r = decode_raster(b.bytes(), "file");
   CHECK(r.channels == 3);

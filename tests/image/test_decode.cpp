@@ -251,7 +251,7 @@ TEST_CASE("linear_raster decodes colours and leaves alpha") {
 }
 
 // Floats take at least 12 bytes per pixel, while runs of equal bytes take almost none.
-TEST_CASE("a few bytes do not become gigabytes") {
+TEST_CASE("a few bytes do not decode to gigabytes") {
   const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
   CHECK(why_rejected(bytes_of(header + "-Y 8000 +X 8000\n"), default_max_pixels)
             .find("picture of 8000x8000 would take 732 MB of memory, from a file of") == 0);

@@ -97,7 +97,7 @@ TEST_CASE("luminance and subsampled chroma become colour; other subsampling is r
                        "file:1:1: EXR with subsampled channel G is not supported", InputError);
 }
 
-TEST_CASE("headers that claim too much are refused before OpenEXR sees them") {
+TEST_CASE("headers that claim too much are refused before OpenEXR reads them") {
   const auto reason = [](const ExrFixture& f, int claimed_width, int claimed_height) {
     std::vector<uint8_t> bytes = make_exr(f);
     const std::string name = "dataWindow";
@@ -161,7 +161,7 @@ TEST_CASE("layers become named channels in their window") {
   CHECK(read_image(path).at(5, 2) == Rgb{21});
 }
 
-TEST_CASE("colours of an EXR file's own primaries become Rec. 709") {
+TEST_CASE("colours in an EXR file's own primaries become Rec. 709") {
   const std::vector<float> acescg{0.713f, 0.293f, 0.165f,   0.830f,
                                   0.128f, 0.044f, 0.32168f, 0.33767f};
   test::ExrFixture fixture{.width = 1, .height = 1, .constants = {3, 2, 1}};  // B, G, R

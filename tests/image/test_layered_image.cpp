@@ -57,7 +57,7 @@ TEST_CASE("layers, window and note come back as they were written") {
   CHECK_THROWS_AS(read_layers(file.path, 5 * 3 * 3 - 1), InputError);
 }
 
-TEST_CASE("what is no such file is refused") {
+TEST_CASE("other files are refused") {
   const File file;
   CHECK_THROWS_AS(read_layers(file.path), InputError);
   std::ofstream(file.path, std::ios::binary) << "v/1\x01 and no more";

@@ -28,7 +28,7 @@ size_t entries(const TempFolder& folder) {
 
 }  // namespace
 
-TEST_CASE("nothing is replaced before commit(), and nothing stays where a file fails") {
+TEST_CASE("no file is replaced before commit(), and nothing is left behind if one fails") {
   const TempFolder folder;
   const std::string a = folder.write("a", "old a"), b = folder.write("b", "old b");
   {

@@ -65,7 +65,7 @@ int status_of(const std::function<void()>& body) {
 
 }  // namespace
 
-TEST_CASE("a pipe that nobody reads from is an error, not a wait without end") {
+TEST_CASE("a pipe without a reader is an error, not an endless wait") {
   const TemporaryFolder folder;
   const std::string pipe = folder.path("pipe.csv");
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
@@ -93,7 +93,7 @@ TEST_CASE("a reader of a pipe gets all that is written after the reservation") {
   CHECK(got == large + "end");
 }
 
-TEST_CASE("a reader that goes away is an error, and does not end the process") {
+TEST_CASE("a reader that disconnects is an error and does not end the process") {
   const TemporaryFolder folder;
   const std::string pipe = folder.path("pipe.csv");
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
@@ -105,7 +105,7 @@ TEST_CASE("a reader that goes away is an error, and does not end the process") {
         }) == 7);
 }
 
-TEST_CASE("an open file is written where it stands, and stays the same file") {
+TEST_CASE("an open file is written at its position and stays the same file") {
   const TemporaryFolder folder;
   const std::string path = folder.path("redirected");
   const int descriptor = open(path.c_str(), O_RDWR | O_CREAT, 0600);
@@ -149,7 +149,7 @@ TEST_CASE("disks and sockets are refused") {
     CHECK(contains(why_not([&] { OutputReservation reserved(disk); }), "it is a disk"));
 }
 
-TEST_CASE("a limit on the size of files is an error, and leaves nothing") {
+TEST_CASE("exceeding a file size limit is an error and leaves nothing behind") {
   const TemporaryFolder folder;
   CHECK(status_of([&] {
           const rlimit limit{1000, 1000};

@@ -73,7 +73,7 @@ Vec3d in_srgb(const Vec3d& encoded, const std::array<Vec3d, 3>& colorants, doubl
 
 }  // namespace
 
-TEST_CASE("PNG's gamma: linear values stay, others are brought to sRGB, alpha is left alone") {
+TEST_CASE("PNG gamma: linear values stay, others are converted to sRGB, alpha is unchanged") {
   const std::vector<int> values{0, 1, 40, 7, 128, 200, 255, 99};
   for (const int depth : {8, 16})
     for (const double gamma : {1.0, 1 / 1.8, 0.25}) {
@@ -98,7 +98,7 @@ TEST_CASE("PNG's gamma: linear values stay, others are brought to sRGB, alpha is
     }
 }
 
-TEST_CASE("what says sRGB, or nothing, or nonsense, stays as it is") {
+TEST_CASE("files marked sRGB, unmarked or with invalid marks stay unchanged") {
   PngFixture f = row_of(2, 3, 8, {10, 100, 250});
   const auto stays = [&](ColoursFound expected) {
     const Obeyed o = obey(make_png(f));
@@ -161,7 +161,7 @@ TEST_CASE("linear and grey profiles; alpha stays") {
   }
 }
 
-TEST_CASE("profiles that lie are left out: broken ones, and of other channels") {
+TEST_CASE("invalid profiles are ignored: broken ones, and those for other channels") {
   const std::vector<uint8_t> good = make_rgb_profile(adobe_colorants, 2.2);
   std::vector<uint8_t> block(64 * 3, 100);
   for (const size_t length : {size_t(20), size_t(130), good.size() - 40}) {

@@ -91,7 +91,7 @@ TEST_CASE("TGA: run lengths, also over the ends of rows") {
   CHECK(decode_raster(t.bytes(), "file").texels8 == Bytes{9, 9, 9, 9, 1, 2});
 }
 
-TEST_CASE("TGA: files that are cut or lie are errors, before memory is taken") {
+TEST_CASE("TGA: truncated files and false headers are errors before memory is taken") {
   Tga t{.kind = 10, .width = 2, .height = 2, .depth = 24, .body = {0x83, 1, 2, 3}};
   Bytes whole = t.bytes();
   CHECK(why_rejected(whole).empty());

@@ -31,7 +31,7 @@ std::string why_not_written(const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("EXR and PFM give back every bit") {
+TEST_CASE("EXR and PFM preserve every bit") {
   const TemporaryFolder folder;
   Image image = random_image(37, 21, 1);
   image.at(0, 0) = {-1, infinity, 1e-42f};
@@ -48,7 +48,7 @@ TEST_CASE("EXR and PFM give back every bit") {
   CHECK(std::isnan(read_image(folder.path("nan.exr")).at(3, 4).g));
 }
 
-TEST_CASE("HDR is true to half a step of its largest component") {
+TEST_CASE("HDR is exact to half a step of its largest component") {
   const TemporaryFolder folder;
   for (const int width : {5, 8, 300}) {  // plain pixels, shortest line with runs, long runs
     Image image = random_image(width, 9, 2);
@@ -112,7 +112,7 @@ TEST_CASE("the same pixels give the same bytes, for any number of threads") {
   }
 }
 
-TEST_CASE("what cannot be written says why and leaves nothing") {
+TEST_CASE("failed writes state the reason and leave nothing behind") {
   const TemporaryFolder folder;
   CHECK(why_not_written(folder.path("none/a.exr")) ==
         "cannot write " + folder.path("none/a.exr") + ": No such file or directory");
@@ -125,7 +125,7 @@ TEST_CASE("what cannot be written says why and leaves nothing") {
   CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("a full disk is told") {
+TEST_CASE("a full disk is reported") {
   if (!std::filesystem::exists("/dev/full")) return;
   const TemporaryFolder folder;
   std::filesystem::create_symlink("/dev/full", folder.path("full.png"));
@@ -133,7 +133,7 @@ TEST_CASE("a full disk is told") {
   CHECK(std::filesystem::is_symlink(folder.path("full.png")));
 }
 
-TEST_CASE("AtomicFile replaces whole files only") {
+TEST_CASE("AtomicFile replaces files only as a whole") {
   const TemporaryFolder folder;
   const std::string path = folder.path("a.csv");
   const auto text = [&] {
@@ -175,7 +175,7 @@ TEST_CASE("AtomicFile replaces whole files only") {
   CHECK_THROWS_AS(OutputReservation(""), EnvironmentError);
 }
 
-TEST_CASE("reading what is not there is an input error") {
+TEST_CASE("reading a missing file is an input error") {
   const TemporaryFolder folder;
   CHECK_THROWS_AS(read_image(folder.path("none.exr")), InputError);
   CHECK_THROWS_AS(read_image(folder.path("")), InputError);

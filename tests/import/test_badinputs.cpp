@@ -95,12 +95,12 @@ size_t check_all(const std::set<std::string>& formats) {
 
 }  // namespace
 
-TEST_CASE("glTF files that others wrote load or fail as they should") {
+TEST_CASE("glTF files of other projects load or fail as expected") {
   const size_t count = check_all({"gltf", "glb"});
   CHECK((count == 0 || count > 100));
 }
 
-TEST_CASE("OBJ, PLY and pbrt files that others wrote load or fail as they should") {
+TEST_CASE("OBJ, PLY and pbrt files of other projects load or fail as expected") {
   const size_t count = check_all({"obj", "ply", "pbrt"});
   CHECK((count == 0 || count > 50));
 }

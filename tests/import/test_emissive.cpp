@@ -72,7 +72,7 @@ TEST_CASE("a square of two triangles is one polygon, counterclockwise from the f
   CHECK(scene.meshes[0].lights == std::vector<int32_t>{0, 0});
 }
 
-TEST_CASE("vertices of their own for every triangle make no difference") {
+TEST_CASE("separate vertices for every triangle make no difference") {
   const Mesh split =
       mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, -0.0f, -0.0f}, {1, 1, 0}, {0, 1, 0}},
               {{0, 1, 2}, {3, 4, 5}});
@@ -129,7 +129,7 @@ TEST_CASE("property: transformed polygons keep their corners, front and area") {
   }
 }
 
-TEST_CASE("what is no planar convex polygon stays a mesh") {
+TEST_CASE("sources that are not planar convex polygons stay meshes") {
   const auto is_mesh = [](const Mesh& mesh) {
     const Scene scene = emitting(mesh);
     return scene.lights.size() == 1 && scene.lights[0].kind == LightKind::mesh &&
@@ -216,7 +216,7 @@ TEST_CASE("no area, no emission, constant textures") {
   CHECK(scene.lights[0].is_two_sided);
 }
 
-TEST_CASE("a source with an alpha mask stays a mesh that knows of its holes") {
+TEST_CASE("a source with an alpha mask stays a mesh with its holes") {
   Scene scene;
   Material masked;
   masked.is_alpha_masked = true;

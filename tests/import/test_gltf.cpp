@@ -38,7 +38,7 @@ Scene scene_of_repository(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("a square is read with its normals, texture coordinates and name") {
+TEST_CASE("a square is read with normals, texture coordinates and name") {
   const Scene scene = import_text(square_scene("[{'mesh':0,'name':'wall'}]", plain_material));
   REQUIRE(scene.meshes.size() == 1);
   const Mesh& mesh = scene.meshes[0];
@@ -118,7 +118,7 @@ TEST_CASE("only the default scene is shown; without scenes, all roots are") {
   CHECK(import_text(square_scene(nodes, plain_material)).meshes.size() == 2);
   scene = import_text(square_scene(nodes, plain_material + ",'scenes':[{}]"));
   CHECK(scene.meshes.empty());
-  CHECK(has_warning(scene, "no triangles"));
+  CHECK(has_warning(scene, "no visible triangles"));
 }
 
 TEST_CASE("cameras: vertical field of view, aspect, orthographic size, names, node transforms") {
@@ -176,18 +176,18 @@ TEST_CASE("a hierarchy of any depth is read without recursion") {
   CHECK(scene.meshes.size() == 1);
 }
 
-TEST_CASE("extensions that are not known are warnings, stronger ones where a file requires them") {
+TEST_CASE("unknown extensions are warnings, stronger ones if a file requires them") {
   const Scene scene = import_text(square_scene(
       "[{'mesh':0}]", plain_material + ",'extensionsUsed':['ABC_clouds','KHR_materials_ior',"
                                        "'ABC_rain'],'extensionsRequired':['ABC_rain']"));
   CHECK(scene.meshes.size() == 1);
   CHECK(has_warning(scene, "'ABC_clouds' is not supported and ignored"));
-  CHECK(has_warning(scene, "'ABC_rain' is not supported, though the file requires it"));
+  CHECK(has_warning(scene, "'ABC_rain' is not supported, although the file requires it"));
   CHECK_FALSE(has_warning(scene, "'ABC_rain' is not supported and"));
   CHECK_FALSE(has_warning(scene, "KHR_materials_ior"));
 }
 
-TEST_CASE("what a scene lists is shown once, and where its parents place it") {
+TEST_CASE("a listed node is shown once, where its parents place it") {
   const std::string nodes =
       "[{'translation':[0,0,5],'children':[1]},{'mesh':0,'translation':[0,0,2]}]";
   const auto heights = [&](const std::string& listed) {
@@ -198,8 +198,8 @@ TEST_CASE("what a scene lists is shown once, and where its parents place it") {
     return scene;
   };
   CHECK(heights("0").warnings.total() == 0);
-  CHECK(has_warning(heights("1"), "is no root"));
-  CHECK(has_warning(heights("1,0"), "is no root"));
+  CHECK(has_warning(heights("1"), "is not a root"));
+  CHECK(has_warning(heights("1,0"), "is not a root"));
   CHECK(has_warning(heights("0,0"), "listed twice"));
 }
 
@@ -217,7 +217,7 @@ TEST_CASE("errors name line and column of the offending value") {
   CHECK(e.line() == 2);
 }
 
-TEST_CASE("values of a wrong type are errors, never something else") {
+TEST_CASE("values of a wrong type are always errors") {
   for (const std::string value : {"'x'", "-1", "1.5", "1e300", "null", "[]", "{}", "true",
                                   "18446744073709551615", "99999999999999999999999"}) {
     CAPTURE(value);

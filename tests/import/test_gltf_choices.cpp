@@ -61,7 +61,7 @@ TEST_CASE("a moment of an animation: translations by steps, lines and curves") {
   CHECK(x_at("7", "CUBICSPLINE", 1.5) == doctest::Approx(expected));
 }
 
-TEST_CASE("a moment of an animation: rotations keep to the sphere, and matrices give way") {
+TEST_CASE("a moment of an animation: rotations stay on the sphere, and matrices are replaced") {
   // Half of a quarter turn around z puts the square's corner (1,1) above the origin.
   const Box box = bounds(at_time(animated("rotation", "6", "LINEAR"), 2));
   CHECK(box.upper.y == doctest::Approx(std::sqrt(2.0)));
@@ -71,7 +71,7 @@ TEST_CASE("a moment of an animation: rotations keep to the sphere, and matrices 
         doctest::Approx(9));
 }
 
-TEST_CASE("animations are told where none is asked for; names that are not there are refused") {
+TEST_CASE("animations cause a warning unless one is requested; unknown names are refused") {
   const std::string text = animated("translation", "5", "LINEAR");
   CHECK(bounds(import_text(text)).lower.x == doctest::Approx(0));
   CHECK(has_warning(import_text(text), "--time"));
@@ -96,7 +96,8 @@ TEST_CASE("animation data that does not fit is refused where it stands") {
   CHECK(reason(animated("translation", "4", "LINEAR")).find("3 components") != std::string::npos);
   CHECK(reason(animated("translation", "99", "LINEAR")).find("accessors") != std::string::npos);
   CHECK(reason(animated("translation", "5", "WAVY")).find("WAVY") != std::string::npos);
-  CHECK(has_warning(at_time(animated("pointer", "5", "LINEAR"), 1), "no property of a node"));
+  CHECK(has_warning(at_time(animated("pointer", "5", "LINEAR"), 1),
+                    "anything but properties of nodes"));
 }
 
 TEST_CASE("variants: the chosen one's materials, or a list of names") {

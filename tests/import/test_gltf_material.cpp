@@ -143,10 +143,10 @@ TEST_CASE("missing and broken images are warnings; grey stands for colours, the 
     CHECK(only_material(scene).base_color.texture == no_texture);
     CHECK(only_material(scene).normal_texture == no_texture);
     CHECK(only_material(scene).base_color.value == Rgb{0.5f});
-    CHECK(has_warning(scene, "grey stands for it"));
+    CHECK(has_warning(scene, "grey replaces it"));
   }
   const Scene none = with_material("{'normalTexture':{'index':0}}", ",'textures':[{}]");
-  CHECK(has_warning(none, "no image of a format that is read"));
+  CHECK(has_warning(none, "no image of a supported format"));
 }
 
 TEST_CASE("images outside the scene's folder are not read: one beside the scene, or grey") {
@@ -212,7 +212,8 @@ TEST_CASE("KHR_materials_pbrSpecularGlossiness: a dielectric of that reflectance
         doctest::Approx(1 - 0.5 * 0x66 / 255.0).epsilon(0.005));
 }
 
-TEST_CASE("what materials cannot show is told, and approximated where that is nearer") {
+TEST_CASE(
+    "unsupported properties of materials cause a warning, and are approximated where possible") {
   const Scene unlit = with_material("{'extensions':{'KHR_materials_unlit':{}}}");
   CHECK(only_material(unlit).kind == MaterialKind::diffuse);
   CHECK(has_warning(unlit, "unlit"));
@@ -260,7 +261,7 @@ TEST_CASE("sheen and anisotropy: factors and textures") {
       "'pbrMetallicRoughness':{'metallicFactor':0,'roughnessFactor':0.5},'extensions':{"
       "'KHR_materials_transmission':{'transmissionFactor':1},"
       "'KHR_materials_anisotropy':{'anisotropyStrength':1}}");
-  CHECK(has_warning(scene, "anisotropy of what transmits is approximated"));
+  CHECK(has_warning(scene, "anisotropic transmission is approximated"));
   // geometric mean of the widths 1/4 and 1
   CHECK(sqr(only_material(scene).roughness.value) == doctest::Approx(0.5));
 }
@@ -316,11 +317,11 @@ TEST_CASE("clear coats and thin films: factors and textures") {
   const std::string place = "'KHR_materials_iridescence':{";
   std::string varying = solid;
   varying.insert(varying.find(place) + place.size(), uneven);
-  CHECK(has_warning(with(varying), "differs from place to place"));
+  CHECK(has_warning(with(varying), "a varying film over rough glass"));
   CHECK(m.specular_color.value == Rgb{1});
 }
 
-TEST_CASE("a data URI that is broken is told of though nothing shows its image") {
+TEST_CASE("a broken data URI causes a warning even if its image is unused") {
   const Scene scene = with_material("{}",
                                     ",'images':[{'uri':'data:image/png;base64,A'},"
                                     "{'uri':'data:image/png;base64,AAAA'}]");
@@ -328,7 +329,7 @@ TEST_CASE("a data URI that is broken is told of though nothing shows its image")
   CHECK(scene.warnings.total() == 1);
 }
 
-TEST_CASE("a thin body is a sheet and keeps its film, be it one that absorbs") {
+TEST_CASE("a thin body is a sheet and keeps its film, also if it absorbs") {
   for (const float absorption : {0.0f, 1.0f}) {
     Scene scene;
     Material& glass = scene.materials.emplace_back();

@@ -98,7 +98,7 @@ Scene import_on(int threads, const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("images ahead: each is decoded once at most, to what it would be, or left alone") {
+TEST_CASE("images ahead: each is decoded at most once, with the same result, or not at all") {
   constexpr int count = 60;
   const auto key = [](int i) { return "k" + std::to_string(i); };
   for (const int threads : {0, 1, 3})
@@ -141,7 +141,7 @@ TEST_CASE("images ahead: each is decoded once at most, to what it would be, or l
     }
 }
 
-TEST_CASE("images ahead: whoever leaves early waits for no more than what was begun") {
+TEST_CASE("images ahead: an early exit waits only for images that were begun") {
   std::atomic<int> decoded = 0;
   {
     ImagesAhead ahead(2);
@@ -156,7 +156,7 @@ TEST_CASE("images ahead: whoever leaves early waits for no more than what was be
   CHECK(decoded < 1000);  // only the end stops the threads; decoding all would take a second
 }
 
-TEST_CASE("images read on many threads make the scene that one thread makes") {
+TEST_CASE("images read on many threads give the same scene as on one thread") {
   const Images images;
   for (const std::string& path : images.all()) {
     CAPTURE(path);
@@ -203,7 +203,7 @@ TEST_CASE("a scene without its images has its shapes, and says how much it lacks
   CHECK(*scene.skipped_image_bytes == 0);
 }
 
-TEST_CASE("lights of images are left out with the others") {
+TEST_CASE("image lights are left out with the other images") {
   const TempFolder folder;
   write_image(folder.path("sky.pfm"), Image(8, 4, Rgb{1}));
   const std::vector<std::string> scenes{

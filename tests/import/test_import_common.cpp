@@ -115,7 +115,7 @@ TEST_CASE("percent-decoding and base64") {
   CHECK_FALSE(has_uri_scheme("file.bin"));
 }
 
-TEST_CASE("JSON pointers lead to line and column") {
+TEST_CASE("JSON pointers are resolved to line and column") {
   const std::string text =
       "{\n"
       "  \"a\": [10, {\"b/c\": \"x\\\"]}\"},\n"
@@ -167,7 +167,7 @@ TEST_CASE("textures are shared by equal requests and decoded once") {
   CHECK(scene.warnings.entries().empty());
 }
 
-TEST_CASE("colours of EXR images are brought to sRGB, data are not") {
+TEST_CASE("colours of EXR images are converted to sRGB, data are not") {
   test::ExrFixture fixture{.width = 1, .height = 1, .constants = {0.5f, 0.5f, 0.5f}};
   fixture.chromaticities = {0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f};
   const auto value = [&](bool is_color) {
@@ -186,7 +186,7 @@ TEST_CASE("colours of EXR images are brought to sRGB, data are not") {
   CHECK(value(false) == Rgb{0, 1, 0});
 }
 
-TEST_CASE("images that cannot be had become constant textures and warnings: grey for colours") {
+TEST_CASE("missing images become constant textures with warnings: grey for colours") {
   const TempFolder folder;
   Scene scene;
   TextureLoader loader(scene);
@@ -220,7 +220,7 @@ TEST_CASE("the format is chosen by the ending, in any case") {
   CHECK(import_scene(folder.write("a.GLTF", "{\"asset\":{\"version\":\"2.0\"}}")).meshes.empty());
 }
 
-TEST_CASE("halving an image averages light, not bytes; alpha plainly") {
+TEST_CASE("halving an image averages linear light instead of bytes; alpha is averaged directly") {
   Texture t;
   t.kind = TextureKind::image;
   t.width = 2;
@@ -246,7 +246,7 @@ TEST_CASE("halving an image averages light, not bytes; alpha plainly") {
   CHECK(halved(halved(small)).texels_float == std::vector<float>{4.5f});
 }
 
-TEST_CASE("images that do not fit together are shown smaller, down to one texel") {
+TEST_CASE("images that do not fit into memory together are reduced, down to one texel") {
   const TempFolder folder;
   const std::string first = folder.write("a.pfm", pfm()), second = folder.write("b.pfm", pfm());
   Scene scene;

@@ -81,7 +81,7 @@ Mesh small_ball() {
 
 }  // namespace
 
-TEST_CASE("pbrt's objects become instances, which stand and face as copies do") {
+TEST_CASE("pbrt objects become instances with the place and orientation of copies") {
   const TempFolder folder;
   folder.write("ball.ply", ply_of(large_ball(), true));
   folder.write("bare.ply", ply_of(large_ball(), false));
@@ -110,7 +110,7 @@ TEST_CASE("pbrt's objects become instances, which stand and face as copies do") 
   }
 }
 
-TEST_CASE("what cannot be an instance is copied, what stands once is a mesh") {
+TEST_CASE("objects that cannot be instances are copied; objects used once become meshes") {
   const TempFolder folder;
   folder.write("ball.ply", ply_of(large_ball(), true));
   const std::string object =
@@ -142,7 +142,7 @@ TEST_CASE("what cannot be an instance is copied, what stands once is a mesh") {
   CHECK(gone.instanced_meshes.empty());
 }
 
-TEST_CASE("an instancer copies while copies are few, and what has few triangles") {
+TEST_CASE("few copies, and objects with few triangles, are copied instead of instanced") {
   Scene scene;
   scene.materials.resize(2);
   scene.materials[1].kind = MaterialKind::dielectric;
@@ -175,7 +175,7 @@ TEST_CASE("an instancer copies while copies are few, and what has few triangles"
   CHECK(scene.instances.size() == 10);
 }
 
-TEST_CASE("glTF's shared meshes and instances are stored once, what emits is copied") {
+TEST_CASE("shared meshes and instances of glTF are stored once; emitters are copied") {
   const TempFolder folder;
   const Mesh& ball = large_ball();
   folder.write("b.bin", bytes_of(ball.positions) + bytes_of(ball.triangles) +
@@ -234,7 +234,7 @@ TEST_CASE("glTF's shared meshes and instances are stored once, what emits is cop
                        doctest::Contains("more than 60000000 triangles"), InputError);
 }
 
-TEST_CASE("Mitsuba's groups, in groups too, are stored once") {
+TEST_CASE("shape groups of Mitsuba, also nested ones, are stored once") {
   const TempFolder folder;
   folder.write("ball.ply", ply_of(large_ball(), true));
   folder.write("bare.ply", ply_of(large_ball(), false));

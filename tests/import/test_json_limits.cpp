@@ -35,17 +35,17 @@ double peak_memory_mb() {
 
 }  // namespace
 
-TEST_CASE("levels: as many as allowed and no more, in arrays, objects and both") {
+TEST_CASE("levels: the allowed number and no more, in arrays, objects and both") {
   const JsonLimits limits{4, 100};
   CHECK(refusal("[[[[]]]]", limits).empty());
   CHECK(refusal("[[[[]],[[],[]]]]", limits).empty());
   CHECK(refusal("{\"a\":{\"b\":{\"c\":{}}}}", limits).empty());
-  const std::string what = "JSON with more than 4 arrays and objects within each other";
+  const std::string what = "JSON with more than 4 levels of arrays and objects";
   CHECK(refusal("[[[[[]]]]]", limits) == "a.gltf:1:5: " + what);
   CHECK(refusal("{\"a\":\n {\"b\":[{\"c\":\n  [1]}]}}", limits) == "a.gltf:3:3: " + what);
 }
 
-TEST_CASE("values: as many as allowed and no more; brackets and commas in strings are none") {
+TEST_CASE("values: the allowed number and no more; brackets and commas in strings do not count") {
   const JsonLimits limits{10, 6};
   CHECK(refusal("[1,2,3,4]", limits).empty());
   CHECK(refusal("[\"a,b,c,[{[{[{\\\",,,,,\",2]", limits).empty());
@@ -55,16 +55,16 @@ TEST_CASE("values: as many as allowed and no more; brackets and commas in string
   CHECK(refusal("[{},{},{},{}]", limits) == "a.gltf:1:8: " + what);
 }
 
-TEST_CASE("ten million open brackets, of which no parser gets to see the end") {
+TEST_CASE("ten million open brackets are refused before parsing") {
   const std::string arrays = repeated("[", 10'000'000), objects = repeated("{\"a\":", 2'000'000);
   const double before = peak_memory_mb();
-  const std::string what = "JSON with more than 200 arrays and objects within each other";
+  const std::string what = "JSON with more than 200 levels of arrays and objects";
   CHECK(refusal(arrays) == "a.gltf:1:201: " + what);
   CHECK(refusal(objects) == "a.gltf:1:1001: " + what);
   CHECK(peak_memory_mb() - before < 64);  // a copy of the text, but not its arrays
 }
 
-TEST_CASE("more tiny values than allowed take no memory; as many as allowed are read") {
+TEST_CASE("too many tiny values take no memory; the allowed number is read") {
   const JsonLimits limits{200, 1'000'000};
   const std::string values = "[" + repeated("{},", 5'000'000) + "{}]";
   const double before = peak_memory_mb();
@@ -73,7 +73,7 @@ TEST_CASE("more tiny values than allowed take no memory; as many as allowed are 
   CHECK(refusal("[" + repeated("0,", 900'000) + "0]", limits).empty());
 }
 
-TEST_CASE("a text that is not well formed is refused for that, whatever its strings leave open") {
+TEST_CASE("malformed text is refused as such, even with unclosed strings") {
   for (const char* text : {"\"", "[\"\\", "[\"abc", "]]]]", "}{", ",,,,", ""})
     CHECK(refusal(text, {4, 10}).find("not valid JSON") != std::string::npos);
 }

@@ -97,7 +97,7 @@ TEST_CASE("pbrt's point, spot and distant lights") {
   CHECK(both.lights[1].name == "emitter0");
 }
 
-TEST_CASE("pbrt's lights that make no sense are errors with a place, or warnings") {
+TEST_CASE("senseless pbrt lights are errors with a place, or warnings") {
   for (const char* bad :
        {"LightSource \"point\" \"float scale\" -1", "LightSource \"spot\" \"float coneangle\" 200",
         "LightSource \"point\" \"point3 from\" [0 0 0 1 1 1]",
@@ -122,7 +122,7 @@ TEST_CASE("pbrt's lights that make no sense are errors with a place, or warnings
   }
 }
 
-TEST_CASE("pbrt's portals are rectangles of the world; others are told and left aside") {
+TEST_CASE("pbrt portals are rectangles in world space; others are ignored with a warning") {
   const auto with = [](const std::string& corners, const std::string& before = "") {
     return import_world(before + "LightSource \"infinite\" \"point3 portal\" [" + corners + "]");
   };
@@ -139,11 +139,11 @@ TEST_CASE("pbrt's portals are rectangles of the world; others are told and left 
     CAPTURE(odd);
     const Scene left = with(odd);
     CHECK(only_light(left).portal.empty());
-    CHECK(has_text(left, "portal is no rectangle"));
+    CHECK(has_text(left, "portal is not a rectangle"));
   }
 }
 
-TEST_CASE("pbrt's infinite lights: even, and images turned by the transform") {
+TEST_CASE("pbrt's infinite lights: uniform, and images rotated by the transform") {
   Light e =
       only_light(import_world("LightSource \"infinite\" \"rgb L\" [1 2 3] \"float scale\" 2"));
   CHECK(e.kind == LightKind::environment);
@@ -175,7 +175,7 @@ TEST_CASE("pbrt's infinite lights: even, and images turned by the transform") {
   CHECK(mirrored.warnings.entries().empty());
 }
 
-TEST_CASE("images of environments: what is no number, negative, infinite or huge") {
+TEST_CASE("environment images: NaN, negative, infinite and huge values") {
   const TempFolder folder;
   std::vector<float> texels(8 * 4 * 3, 1.0f);
   texels[0] = NAN;
@@ -213,7 +213,7 @@ TEST_CASE("images of environments: what is no number, negative, infinite or huge
   CHECK_THROWS_AS(read_environment("/nonexistent/a.hdr", told), InputError);
 }
 
-TEST_CASE("an even image's irradiance from above is pi times its radiance") {
+TEST_CASE("the irradiance from a uniform image above is pi times its radiance") {
   for (const SphereMap projection : {SphereMap::lat_long, SphereMap::equal_area}) {
     EnvironmentMap map;
     map.projection = projection;
@@ -249,7 +249,7 @@ TEST_CASE("KHR_lights_punctual: points, spots and directional lights in their un
   CHECK(length(e.direction - Vec3{0, 0, -1}) < 1e-6f);
 }
 
-TEST_CASE("KHR_lights_punctual: a light that cannot be is left out, with its name and place") {
+TEST_CASE("KHR_lights_punctual: an impossible light is left out, with its name and place") {
   for (const char* bad :
        {"{'intensity':3}", "{'type':'point','intensity':-1}", "{'type':'point','range':0}",
         "{'type':'point','color':[1,1]}",
@@ -303,7 +303,7 @@ TEST_CASE("pbrt's goniometric and projection lights") {
   CHECK(import("LightSource \"projection\" \"string filename\" \"gone.pfm\"").lights.empty());
 }
 
-TEST_CASE("illuminance of images of few texels is what lights give") {
+TEST_CASE("the illuminance from images with few texels is that of lights") {
   // Bilinear between two rows, 3 at the top and 1 below. As a function of the zenith angle over pi:
   // 3 up to 1/4, then down to 1 at 3/4.
   EnvironmentMap map;
@@ -399,7 +399,7 @@ float image_towards(const Scene& s, const Vec3& world) {
 
 }  // namespace
 
-TEST_CASE("glTF's image-based light: six faces as they look from within, turned and scaled") {
+TEST_CASE("glTF's image-based light: six faces as seen from inside, rotated and scaled") {
   std::string images;
   for (int i = 0; i < 6; ++i) images += (i > 0 ? "," : "") + data_image(pfm_face(float(i + 1)));
   const Scene plain = import_text(image_light(images));
@@ -445,7 +445,7 @@ TEST_CASE("mutated image-based lights load or are refused") {
   });
 }
 
-TEST_CASE("a radius makes spheres of points and spots, as strong from far away") {
+TEST_CASE("--light-radius turns points and spots into spheres with the same light far away") {
   Scene s;
   Light e;
   e.kind = LightKind::point;

@@ -42,7 +42,7 @@ void check_near(Rgb a, Rgb b) {
 
 }  // namespace
 
-TEST_CASE("what glass absorbs per metre") {
+TEST_CASE("absorption of glass per metre") {
   const auto gltf = [](const std::string& volume) {
     return import_text(square_scene("[{'mesh':0}]",
                                     "'materials':[{'extensions':{'KHR_materials_transmission':{"
@@ -142,7 +142,7 @@ TEST_CASE("bumps") {
   CHECK(material_of(normals).normal_scale == 0.5f);
 }
 
-TEST_CASE("pbrt's patterns and noise are looked up, by the transform that they are given under") {
+TEST_CASE("pbrt's patterns and noise are evaluated with the transform of their definition") {
   const auto value = [](const std::string& texture, const TexturePlace& place) {
     const Scene s = pbrt("Translate 1 0 0\n" + texture +
                          "\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n" + triangle);
@@ -189,7 +189,7 @@ TEST_CASE("round shapes of pbrt with textures or holes are triangles, those that
   CHECK_FALSE(pbrt(checks + "Shape \"disk\"\n").meshes.at(0).uvs.empty());
 }
 
-TEST_CASE("whose backs are seen") {
+TEST_CASE("visibility of back sides, by format") {
   const auto gltf = [](const std::string& material) {
     return import_text(square_scene("[{'mesh':0}]", "'materials':[" + material + "]"))
         .materials[0]

@@ -84,7 +84,7 @@ bool is_whole(const LightWeb& web) {
 
 }  // namespace
 
-TEST_CASE("LM-63: what stands in a file of any edition") {
+TEST_CASE("LM-63: the contents of files of any edition") {
   for (const char* head : {"IESNA:LM-63-2002\n", "IESNA91\n", "IES:LM-63-2019\r\n", ""}) {
     const Luminaire l = read(cosine_ies(head));
     CHECK(l.description == "even disc");
@@ -99,7 +99,7 @@ TEST_CASE("LM-63: what stands in a file of any edition") {
   }
 }
 
-TEST_CASE("LM-63: the edition tells what a negative dimension means") {
+TEST_CASE("LM-63: the edition decides the meaning of a negative dimension") {
   for (const auto& [head, is_old] : {std::pair{"IESNA:LM-63-1995", true},
                                      {"IESNA91", true},
                                      {"IESNA:LM-63-1986", true},
@@ -116,7 +116,7 @@ TEST_CASE("LM-63: the edition tells what a negative dimension means") {
   }
 }
 
-TEST_CASE("LM-63: intensities that no angle asks for are told") {
+TEST_CASE("LM-63: surplus intensities cause a warning") {
   const TempFolder folder;
   const auto warnings_of = [&](const std::string& text) {
     WarningLog warnings;
@@ -132,7 +132,7 @@ TEST_CASE("LM-63: intensities that no angle asks for are told") {
   }
 }
 
-TEST_CASE("planes that symmetry leaves out are there") {
+TEST_CASE("planes omitted by symmetry are added") {
   const Luminaire quarter = read(planes_ies({0, 30, 90}));
   for (const auto& [turn, value] : {std::pair{0, 100},
                                     {30, 130},
@@ -244,7 +244,7 @@ TEST_CASE("photometric files that cannot be used are errors with a place") {
   CHECK_THROWS_AS(read_luminaire("/nonexistent/a.ies", warnings), InputError);
 }
 
-TEST_CASE("ten thousand mutated files load whole or fail as they should") {
+TEST_CASE("ten thousand mutated files load completely or fail as expected") {
   const TempFolder folder;
   const std::string originals[] = {cosine_ies(),
                                    planes_ies({0, 30, 90}),
@@ -285,7 +285,7 @@ TEST_CASE("ten thousand mutated files load whole or fail as they should") {
   CHECK(refused > 500);
 }
 
-TEST_CASE("a luminaire takes the place of a point, of a flat mesh, and of nothing else") {
+TEST_CASE("a luminaire replaces a point or a flat mesh and nothing else") {
   const Luminaire l = read(cosine_ies());
   Scene s;
   s.materials.emplace_back();
@@ -318,7 +318,8 @@ TEST_CASE("a luminaire takes the place of a point, of a flat mesh, and of nothin
   CHECK_THROWS_AS(attach_luminaire(s, "nobody", l, Rgb{1}, {0, 0, -1}), UsageError);
 }
 
-TEST_CASE("an opening has two sides where light goes up, not where a file goes up") {
+TEST_CASE(
+    "an opening has two sides if there is light upwards, not if the file only has angles upwards") {
   for (const auto& [intensities, is_two_sided] : {std::pair{"500 500 0 0 0", false},
                                                   {"500 500 0 0 0.1", false},
                                                   {"500 500 0 100 0", true},

@@ -26,7 +26,7 @@ double seen_from(const OpeningBody& body, const Vec3d& w) {
 
 }  // namespace
 
-TEST_CASE("shapes by the signs of LM-63's dimensions") {
+TEST_CASE("shapes follow from the signs of LM-63's dimensions") {
   CHECK(ies(0, 0, 0).shape == Shape::point);
   CHECK(ies(0, 1, 0).shape == Shape::point);
   CHECK(ies(.5, 1, 0).faces.size() == 1);
@@ -48,7 +48,7 @@ TEST_CASE("shapes by the signs of LM-63's dimensions") {
   CHECK(facing.faces[0].area.x == doctest::Approx(.04 * pi));
 }
 
-TEST_CASE("shapes by the signs of LM-63 of 1995") {
+TEST_CASE("shapes follow from the signs of dimensions in LM-63-1995") {
   const auto size_of = [](double width, double length, double height) {
     return ies_opening(width, length, height, true).size;
   };
@@ -72,7 +72,7 @@ TEST_CASE("shapes by the signs of LM-63 of 1995") {
   CHECK(ies(.5, 1, .1, true).faces.size() == 6);
 }
 
-TEST_CASE("bodies are as large as they look from any side") {
+TEST_CASE("luminous bodies have their projected area from any side") {
   const Vec3d w = normalize(Vec3d{.3, -.5, .7});
   const double box = .6 * .2 * std::abs(w.x) + 1 * .2 * std::abs(w.y) + 1 * .6 * std::abs(w.z);
   CHECK(seen_from(ies(.6, 1, .2), w) == doctest::Approx(box));
@@ -106,7 +106,7 @@ TEST_CASE("EULUMDAT: circles, and boxes whose sides shine part of their height")
   CHECK(seen_from(box, {0, 0, 1}) == doctest::Approx(.36));
 }
 
-TEST_CASE("a face shines where more than a thousandth of the light leaves through it") {
+TEST_CASE("a face shines if more than a thousandth of the light leaves through it") {
   LightWeb web;
   web.vertical_angles_rad = {0, float(pi / 4), float(pi / 2), float(pi)};
   web.horizontal_angles_rad = {0, 2 * pi_f};

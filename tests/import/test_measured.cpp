@@ -83,7 +83,7 @@ Read read(const std::string& bytes) {
 
 }  // namespace
 
-TEST_CASE("a measured metal keeps its width and its colour, what is even becomes diffuse") {
+TEST_CASE("a measured metal keeps its width and colour; the uniform part becomes diffuse") {
   for (const float alpha : {0.05f, 0.2f, 0.5f}) {
     const Read r = read(measured(alpha, 0, 0.4f, 0.4f));
     CAPTURE(alpha);
@@ -120,7 +120,7 @@ TEST_CASE("measured materials of pbrt and Mitsuba") {
   }
 }
 
-TEST_CASE("measured files that are missing or lie are grey, with one warning") {
+TEST_CASE("missing or invalid measured files are shown grey, with one warning") {
   const auto check_grey = [](const Read& r, const char* what) {
     CAPTURE(what);
     REQUIRE(r.warnings.entries().size() == 1);
@@ -129,7 +129,7 @@ TEST_CASE("measured files that are missing or lie are grey, with one warning") {
     CHECK(r.material.base_color.value == Rgb{0.5f});
   };
   const std::string good = measured(0.2f, 0, 0.3f, 0.3f, 20);
-  check_grey(read("PF"), "is no tensor file");
+  check_grey(read("PF"), "is not a tensor file");
   check_grey(read(good.substr(0, 40)), "ends too early");
   check_grey(read(good.substr(0, good.size() - 4)), "outside the file");
   Read r;

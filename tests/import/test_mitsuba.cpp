@@ -107,7 +107,7 @@ TEST_CASE("the film's crop is that part of the picture") {
   CHECK(c.screen_window == std::array<float, 4>{1, 2, 0.5f, 1});
 }
 
-TEST_CASE("transforms apply in the order in which they stand") {
+TEST_CASE("transforms apply in the order of the file") {
   const auto centre = [](const std::string& transform) {
     const Scene scene = import_world(
         "<shape type='sphere'><point name='center' x='1' y='0' z='0'/><transform "
@@ -260,9 +260,9 @@ TEST_CASE("spectra of sources keep their luminance") {
   CHECK(luminance(sampled.radiance) == doctest::Approx(3).epsilon(1e-4));
 }
 
-TEST_CASE("what cannot be is an error with its place") {
+TEST_CASE("impossible values are errors with their place") {
   CHECK(error_of("<shape type='sphere'>\n  <float name='radius' value='two'/></shape>") ==
-        "scene.xml:3:4: 'two' is no number");
+        "scene.xml:3:4: 'two' is not a number");
   CHECK(error_of("<shape type='sphere'>\n<ref id='nothing'/></shape>") ==
         "scene.xml:3:2: no element has the id 'nothing'");
   CHECK(error_of("<include filename='$x'/>") == "scene.xml:2:2: the parameter $x has no <default>");
@@ -280,7 +280,7 @@ TEST_CASE("what cannot be is an error with its place") {
             .find("too deeply") != std::string::npos);
 }
 
-TEST_CASE("text that expands without end is refused") {
+TEST_CASE("endlessly expanding text is refused") {
   std::string world = "<default name='a0' value='xxxxxxxxxx'/>";
   for (int i = 0; i < 40; ++i) {
     const std::string last = std::to_string(i);
@@ -290,7 +290,7 @@ TEST_CASE("text that expands without end is refused") {
   CHECK(error_of(world).find("too much text") != std::string::npos);
 }
 
-TEST_CASE("what is not supported is named") {
+TEST_CASE("unsupported features are named") {
   const Scene scene = import_world(
       "<shape type='hair'/><bsdf type='irawan' id='i'/><shape type='sphere'><ref id='i'/><medium "
       "type='homogeneous'/><float name='wobble' value='1'/></shape><emitter type='collimated'/>"
@@ -303,7 +303,7 @@ TEST_CASE("what is not supported is named") {
   }
 }
 
-TEST_CASE("changed files load or are refused") {
+TEST_CASE("mutated files load or are refused") {
   const TempFolder folder;
   const std::string text =
       "<scene version='3.0.0'><default name='w' value='64'/><sensor type='perspective'><transform "

@@ -109,7 +109,7 @@ TEST_CASE("Mitsuba's smooth and rough materials") {
 
 // Reflectance of the base alone, seen and lit along the normal, times pi. Mitsuba has T² ρ / (η² (1
 // - ρ F)), with ρ = 1 in the denominator unless nonlinear.
-TEST_CASE("plastic has the base that Mitsuba's has") {
+TEST_CASE("plastic has the same base as in Mitsuba") {
   const auto base = [](bool is_nonlinear, float rho) {
     return material_of("<bsdf type='plastic'><boolean name='nonlinear' value='" +
                        std::string(is_nonlinear ? "true" : "false") +

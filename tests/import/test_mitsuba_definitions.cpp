@@ -167,7 +167,7 @@ TEST_CASE("meshes without (u,v) have those of the triangle's corners") {
   CHECK(s.meshes.at(0).uvs == std::vector<Vec2>{{0, 0}, {1, 0}, {0, 1}});
 }
 
-TEST_CASE("bitmaps of numbers are in sRGB unless raw; colours count by their luminance") {
+TEST_CASE("bitmaps used as numbers are sRGB unless raw; colours count by luminance") {
   const float grey = linear_from_srgb(188.0f / 255);
   CHECK(opacity_of(bmp(188, 188, 188)) == doctest::Approx(grey));
   const std::string raw = "<boolean name='raw' value='true'/>";
@@ -177,7 +177,7 @@ TEST_CASE("bitmaps of numbers are in sRGB unless raw; colours count by their lum
 }
 
 // [2], checkerboard.cpp: eval_1() returns the first colour where eval() returns the second.
-TEST_CASE("a checkerboard of numbers begins with its second one") {
+TEST_CASE("a checkerboard of numbers begins with the second number") {
   const auto at = [](const char* version) {
     const Scene s = import_world(
         "<shape type='rectangle'><bsdf type='mask'><texture name='opacity' type='checkerboard'>"
@@ -223,7 +223,7 @@ TEST_CASE("spectra as plugins") {
                     "</spectrum>") == Rgb{4});
 }
 
-TEST_CASE("all of Mitsuba's metals have names") {
+TEST_CASE("all metal names of Mitsuba are known") {
   for (const char* name :
        {"a-C",        "Ag",       "Al",        "AlAs",     "AlAs_palik", "AlSb",
         "AlSb_palik", "Au",       "Be",        "Be_palik", "Cr",         "CsI",

@@ -40,7 +40,7 @@ bool is_near(Rgb a, Rgb b, float tolerance) {
 
 }  // namespace
 
-TEST_CASE("spots fade linearly in the angle and throw pictures over their cone") {
+TEST_CASE("spots fade linearly in the angle and project pictures over their cone") {
   const TempFolder folder;
   folder.write("t.bmp", bmp(255, 188, 0));
   const Scene s = import_mitsuba(folder.write(
@@ -97,7 +97,7 @@ TEST_CASE("a projector lights planes across its beam evenly") {
   CHECK(dark({0, 0, -1}));
 }
 
-TEST_CASE("a projector's picture stands as a camera would see it") {
+TEST_CASE("a projected picture is oriented as a camera would see it") {
   const TempFolder folder;
   // PFM, from the bottom up: the upper left texel is 1.
   std::string pfm = "Pf\n2 2\n-1.0\n";
@@ -175,7 +175,7 @@ TEST_CASE("attributes of vertices and faces are textures") {
                     "no attribute 'vertex_color'"));
 }
 
-TEST_CASE("one bsdf shows each shape its own attributes") {
+TEST_CASE("one bsdf shows the attributes of each shape") {
   const TempFolder folder;
   folder.write("a.ply", coloured_ply);
   std::string other = coloured_ply;

@@ -40,7 +40,7 @@ std::string mixture(const std::string& weights, const std::string& bsdfs) {
 
 }  // namespace
 
-TEST_CASE("mixtures have as many parts as weights; what is left of 1 is absorbed") {
+TEST_CASE("mixtures have as many parts as weights; the rest to 1 is absorbed") {
   Material m = material_of(mixture("1, .5, .5", diffuse(".8") + diffuse(".4") + diffuse("0")));
   CHECK(m.base_color.value.r == doctest::Approx(0.5));  // weights that add up to 2 are normalised
   m = material_of(mixture(".5 .3", diffuse("1 0 0") +
@@ -54,11 +54,11 @@ TEST_CASE("mixtures have as many parts as weights; what is left of 1 is absorbed
   CHECK_THROWS_AS(import_bsdf(mixture("1 -1", diffuse("1") + diffuse("1"))), InputError);
   const Scene metal =
       import_bsdf(mixture(".2 .5 .3", diffuse("1") + "<bsdf type='conductor'/>" + diffuse("1")));
-  CHECK(has_warning(metal, "more weight"));
+  CHECK(has_warning(metal, "larger weight"));
   CHECK(metal.materials.at(0).kind == MaterialKind::conductor);
 }
 
-TEST_CASE("a share of null is a share that light goes through") {
+TEST_CASE("a share of null lets that share of light through") {
   const std::string bsdfs = "<bsdf type='null'/>" + diffuse(".6");
   Scene scene =
       import_bsdf("<bsdf type='blendbsdf'><float name='weight' value='.3'/>" + bsdfs + "</bsdf>");
@@ -89,13 +89,13 @@ TEST_CASE("diffuse blends by textures are textures") {
   CHECK(evaluate(half.textures, d, Vec2{0.7f, 0.2f}).r == doctest::Approx(0.1));
 }
 
-TEST_CASE("a blend of unlike ones by a texture is the one that it shows more of") {
+TEST_CASE("a textured blend of different materials becomes the one with more weight") {
   const Scene scene = import_bsdf(
       "<bsdf type='blendbsdf'><texture type='checkerboard' name='weight'><rgb "
       "name='color0' value='1'/><rgb name='color1' value='.4'/></texture>" +
       diffuse(".2") + "<bsdf type='conductor'/></bsdf>");
   CHECK(scene.materials.at(0).kind == MaterialKind::conductor);
-  CHECK(has_warning(scene, "more weight"));
+  CHECK(has_warning(scene, "larger weight"));
 }
 
 TEST_CASE("masks within masks, and coats that absorb") {
@@ -122,7 +122,7 @@ TEST_CASE("masks within masks, and coats that absorb") {
   const Scene glass = import_bsdf(
       "<bsdf type='coating'><float name='int_ior' value='1.4'/><rgb name='sigma_a' value='.1'/>"
       "<bsdf type='thindielectric'/></bsdf>");
-  CHECK(has_warning(glass, "straight on"));
+  CHECK(has_warning(glass, "without refraction"));
   CHECK(glass.materials.at(0).kind == MaterialKind::dielectric);
   CHECK(glass.materials.at(0).coat.value == 1);
   CHECK(glass.materials.at(0).coat_ior == doctest::Approx(1.4).epsilon(1e-3));
@@ -167,7 +167,7 @@ TEST_CASE("a texture's to_uv may turn") {
 }
 
 // Values as Blender's exporter writes them.
-TEST_CASE("principled: zeros are not told of, anisotropy is a grain") {
+TEST_CASE("principled: zero values cause no warning, anisotropy is supported") {
   const auto principled = [](const char* anisotropic, const char* sheen) {
     return import_bsdf(std::string("<bsdf type='principled'><float name='roughness' value='.6'/>"
                                    "<rgb value='0.000000 0.000000 0.000000' name='spec_tint'/>"

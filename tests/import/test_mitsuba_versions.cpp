@@ -30,7 +30,7 @@ Material material_of(const std::string& bsdf, const std::string& version) {
 
 }  // namespace
 
-TEST_CASE("a file of before 0.3 is one of 0.6 by other names") {
+TEST_CASE("files from before version 0.3 equal those of 0.6 with other names") {
   // A file without a version and with <camera> counts as older than 0.3.
   const Scene old = import_world(
       "<camera type='perspective'><float name='fov' value='40'/><transform name='toWorld'>"
@@ -63,7 +63,7 @@ TEST_CASE("a file of before 0.3 is one of 0.6 by other names") {
   CHECK(old.spheres.at(0).is_inside_out == now.spheres.at(0).is_inside_out);
 }
 
-TEST_CASE("cameras of 0.3 have their x to the right") {
+TEST_CASE("cameras of version 0.3 have x to the right") {
   const auto right = [](const char* tag, const char* version) {
     return import_world(std::string("<") + tag +
                             " type='perspective'><transform name='toWorld'><lookAt "
@@ -76,7 +76,7 @@ TEST_CASE("cameras of 0.3 have their x to the right") {
   CHECK(is_near(right("camera", "0.3.0"), -right("sensor", "0.4.0")));
 }
 
-TEST_CASE("materials of before 0.3") {
+TEST_CASE("materials from before version 0.3") {
   Material m = material_of("<bsdf type='mirror'/>", "0.2.0");
   CHECK(m.kind == MaterialKind::conductor);
   m = material_of("<bsdf type='roughglass'><float name='alphaB' value='.2'/></bsdf>", "0.2.0");
@@ -91,7 +91,7 @@ TEST_CASE("materials of before 0.3") {
   CHECK(m.base_color.value.r == doctest::Approx(0.25));
 }
 
-TEST_CASE("surfaces that only part media are not there up to 0.6") {
+TEST_CASE("surfaces that only separate media are invisible up to version 0.6") {
   const std::string shape =
       "<shape type='sphere'><medium type='homogeneous' name='interior'><rgb name='sigmaS' "
       "value='1'/><rgb name='sigmaA' value='0'/></medium></shape>";
@@ -148,7 +148,7 @@ TEST_CASE("bsdfs of an OBJ file's materials") {
   REQUIRE(scene.meshes.size() == 3);
   CHECK(scene.materials.at(scene.meshes[0].material).base_color.value == Rgb{0.1f});
   CHECK(scene.materials.at(scene.meshes[1].material).base_color.value == Rgb{0.2f});
-  CHECK(has_warning(scene, "no bsdf is named after"));
+  CHECK(has_warning(scene, "without a bsdf of the same name"));
   // A single bsdf applies to the whole file, whatever its name.
   const Scene one = import_mitsuba(folder.write(
       "t.xml",
@@ -158,7 +158,7 @@ TEST_CASE("bsdfs of an OBJ file's materials") {
 }
 
 // Mitsuba takes such parameters from its command line.
-TEST_CASE("what asks for a parameter without a default is left out") {
+TEST_CASE("elements that use an undefined parameter without a default are left out") {
   const Scene scene = import_world(
       "<integrator type='$kind'><integer name='x' value='$depth'/></integrator><sensor "
       "type='perspective'><sampler type='independent'><integer name='sampleCount' "

@@ -44,7 +44,7 @@ std::string bytes_of_hex(const std::string& hex) {
 
 }  // namespace
 
-TEST_CASE("MTL: what an image says of its colours is obeyed, and data are left alone") {
+TEST_CASE("MTL: an image's colour profile is used for colours and ignored for data") {
   for (const std::string order : {"map_Kd i.png\nmap_Pr i.png", "map_Pr i.png\nmap_Kd i.png"}) {
     const TempFolder folder;
     folder.write("i.png", bytes_of_hex(png_of_gamma));
@@ -60,7 +60,7 @@ TEST_CASE("MTL: what an image says of its colours is obeyed, and data are left a
   }
 }
 
-TEST_CASE("MTL: -mm moves what an image says") {
+TEST_CASE("MTL: -mm scales and shifts an image's values") {
   const Scene scene = import_material("Kd 1 1 1\nmap_Kd -mm .1 .8 i.pfm");
   CHECK(scene.warnings.total() == 0);
   const Rgb c = evaluate(scene.textures, only(scene).base_color, Vec2{0.5f, 0.5f});
@@ -69,7 +69,7 @@ TEST_CASE("MTL: -mm moves what an image says") {
   CHECK(c.b == doctest::Approx(0.9));
 }
 
-TEST_CASE("MTL: -imfchan says which channel a number is") {
+TEST_CASE("MTL: -imfchan selects the channel of a number") {
   for (const auto& [option, value] :
        {std::pair{"", 0.25}, std::pair{"-imfchan g", 0.5}, std::pair{"-imfchan b", 1.0},
         std::pair{"-imfchan l", 0.2126 * 0.25 + 0.7152 * 0.5 + 0.0722}}) {
@@ -95,7 +95,7 @@ TEST_CASE("MTL: map_Ns is a factor on the exponent") {
   CHECK(has_warning(import_material("Pr .5\nNs 100\nmap_Ns i.pfm"), "map_Ns"));
 }
 
-TEST_CASE("MTL: -bm of maps of normals, -t, and maps without their numbers") {
+TEST_CASE("MTL: -bm of normal maps, -t, and maps without their numbers") {
   const Scene scene = import_material("Kd 1 1 1\nnorm -bm .5 i.pfm");
   CHECK(only(scene).normal_texture >= 0);
   CHECK(only(scene).normal_scale == 0.5f);
@@ -107,7 +107,7 @@ TEST_CASE("MTL: -bm of maps of normals, -t, and maps without their numbers") {
 }
 
 // A widely used Sponza has such a library.
-TEST_CASE("MTL: most of a library, and what has an image, is not invisible") {
+TEST_CASE("MTL: d 0 of most of a library, or with an image, is not invisible") {
   Scene scene = import_material("Kd 1 1 1\nd 0\nmap_Kd i.pfm");
   CHECK(has_warning(scene, "read as opaque"));
   CHECK(only(scene).kind == MaterialKind::diffuse);

@@ -70,7 +70,7 @@ TEST_CASE("vertices that differ in normal or texture coordinate are split") {
   CHECK(scene.meshes.at(0).positions.size() == 6);
 }
 
-TEST_CASE("concave polygons keep their area") {
+TEST_CASE("concave polygons keep their area when triangulated") {
   // An arrow head, a comb, a star: shoelace areas.
   const Scene arrow = import_text("v 0 0 0\nv 2 1 0\nv 0 2 0\nv 1 1 0\nf 1 2 3 4\n");
   CHECK(area_of(arrow) == doctest::Approx(1));
@@ -202,7 +202,7 @@ TEST_CASE("MTL: gloss of two widths and its direction, sheen, colours and images
   CHECK(told("Kd .5 .5 .5\naniso .8\n", "aniso and Ps without Pr or Pm"));
   CHECK(!told("Kd .5 .5 .5\nPr .4\naniso .8\n", "aniso"));
   for (const char* other : {"Pr .4\n", "illum 3\nKs 1 1 1\n", "illum 1\n"})
-    CHECK(told(other + std::string("map_Ks gone.png\n"), "map_Ks is for gloss"));
+    CHECK(told(other + std::string("map_Ks gone.png\n"), "map_Ks is ignored unless"));
 
   const TempFolder folder;
   write_image(folder.path("k.pfm"), Image(2, 2, Rgb{0.5f}));
@@ -252,7 +252,7 @@ TEST_CASE("images of materials: options, blanks, backslashes, and never outside 
   }
 }
 
-TEST_CASE("libraries with blanks in their names, several, missing ones") {
+TEST_CASE("libraries with spaces in their names, several and missing ones") {
   const TempFolder folder;
   folder.write("my lib.mtl", "newmtl a b\nKd 1 0 0\n");
   folder.write("two.mtl", "newmtl c\nKd 0 1 0\n");
@@ -290,7 +290,7 @@ TEST_CASE("Ke emits from the front, named in order of appearance") {
   CHECK(scene.lights[1].name == "emitter1");
 }
 
-TEST_CASE("what OBJ files hold besides is left out with warnings") {
+TEST_CASE("other statements of OBJ files are left out with warnings") {
   const Scene scene = import_text(
       "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\np 1\nl 1 2\ns off\n"
       "curv 0 1 1 2\nf 1 2\nv nan 1 1.#INF\nf 1 2 3\nf 1 2 4\nf 1 1 2\n");
@@ -365,15 +365,14 @@ TEST_CASE("damaged OBJ and MTL files load or fail cleanly") {
   }
 }
 
-TEST_CASE(
-    "libraries and images named by paths of another machine are taken from beside the scene") {
+TEST_CASE("libraries and images with paths of another machine are read from the scene's folder") {
   const TempFolder folder;
   folder.write("m.mtl", "newmtl a\nmap_Kd C:\\\\work\\\\red.pfm\n");
   folder.write("red.pfm", "PF\n1 1\n-1.0\n" + std::string(12, '\0'));
   const ReferenceNotes references;
   const Scene scene = import_obj(
       folder.write("s.obj", "mtllib /home/somebody/m.mtl\n" + square + "usemtl a\nf 1 2 3\n"));
-  CHECK(has_warning(scene, "the one beside the scene is"));
+  CHECK(has_warning(scene, "the one beside the scene is used"));
   REQUIRE(references.notes().size() == 1);
   CHECK(references.notes()[0].find("is read from 'red.pfm'") != std::string::npos);
   CHECK(scene.textures.at(0).kind == TextureKind::image);

@@ -88,7 +88,7 @@ TEST_CASE("a realistic camera has its lens' field of view") {
   CHECK(has_warning(import_options(film + camera, "", "1 2 3"), "90 degrees"));
 }
 
-TEST_CASE("a light that is left out is told of once, without its parameters") {
+TEST_CASE("a light that is left out causes one warning, without its parameters") {
   for (const std::string light :
        {"LightSource \"goniometric\" \"string filename\" \"wide.pfm\" \"rgb I\" [1 2 3]",
         "LightSource \"goniometric\" \"string filename\" \"no.pfm\" \"rgb I\" [1 2 3]",

@@ -119,7 +119,7 @@ TEST_CASE("unsupported materials are shown diffuse, and say so") {
   CHECK(skin.ior == 1.33f);
 }
 
-TEST_CASE("what scatters in a coat is told of") {
+TEST_CASE("scattering in a coat causes a warning") {
   for (const std::string name : {"coateddiffuse", "coatedconductor"}) {
     const std::string material = "Material \"" + name + "\" ";
     CHECK(has_warning(import_world(material + "\"rgb albedo\" [.5 .5 .5]\n" + triangle),
@@ -149,7 +149,7 @@ TEST_CASE("mixes by textures, and of textures") {
   check_near(color_at(scene, {0.75f, 0.25f}), {0, 0, 0.5f});  // where the share is 1
   // Different kinds are replaced by the one of more weight: the texture's mean is a half.
   scene = mix("\"a\" \"m\"", "\"texture amount\" \"f\"");
-  CHECK(has_warning(scene, "more weight"));
+  CHECK(has_warning(scene, "larger weight"));
   CHECK(scene.materials.at(scene.meshes.at(0).material).kind == MaterialKind::conductor);
   scene = import_world(image +
                        "Texture \"d\" \"spectrum\" \"directionmix\" \"texture tex1\" \"t\" \"rgb "
@@ -160,7 +160,7 @@ TEST_CASE("mixes by textures, and of textures") {
   check_near(color_at(scene, {0.25f, 0.75f}), {0.5f, 0, 0.5f});
 }
 
-TEST_CASE("values a material cannot have") {
+TEST_CASE("impossible values of a material are errors") {
   CHECK_THROWS_AS(material_of("Material \"dielectric\" \"float eta\" 0"), InputError);
   CHECK_THROWS_AS(material_of("Material \"diffuse\" \"texture reflectance\" \"none\""), InputError);
   CHECK_THROWS_AS(material_of("Material \"diffuse\" \"blackbody reflectance\" 3000"), InputError);
@@ -237,7 +237,7 @@ TEST_CASE("constant and scaled textures, with images and without") {
   CHECK(evaluate(rough.textures, m.roughness, Vec2{0.25f, 0.75f}) == doctest::Approx(1 / 3.0));
 }
 
-TEST_CASE("textures that cannot be") {
+TEST_CASE("impossible textures are errors") {
   CHECK_THROWS_AS(import_world("Texture \"a\" \"float\" \"scale\" \"texture tex\" \"a\"\n"
                                "Material \"coateddiffuse\" \"texture roughness\" \"a\"\n" +
                                triangle),
@@ -261,7 +261,7 @@ TEST_CASE("textures that cannot be") {
       InputError);
 }
 
-TEST_CASE("alpha textures cut holes, constant zero leaves the shape out") {
+TEST_CASE("alpha textures cut holes; constant alpha 0 removes the shape") {
   const Scene scene = import_world(
       "Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"four.pfm\"\n"
       "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"texture alpha\" \"a\"\n"

@@ -56,7 +56,9 @@ TEST_CASE("loopsubdiv: a closed body becomes smooth, each level four times as fi
     CHECK(dot(normalize(mesh.positions[i]), mesh.normals[i]) > 0.9f);
 }
 
-TEST_CASE("subdivision by hand: a triangle's edge points, and limits that do not move any more") {
+TEST_CASE(
+    "subdivision agrees with a calculation by hand: edge points of a triangle, and fixed limit "
+    "points") {
   Mesh one;
   one.positions = {{0, 0, 0}, {8, 0, 0}, {0, 8, 0}};
   one.triangles = {{0, 1, 2}};
@@ -103,7 +105,7 @@ TEST_CASE(
   CHECK(double(bounds(spline).lower.z) == doctest::Approx(1));
 }
 
-TEST_CASE("curves and subdivisions that cannot be are refused") {
+TEST_CASE("impossible curves and subdivisions are refused") {
   CHECK(reason_of("Shape \"curve\" \"point3 P\" [0 0 0 1 1 1]").find("number of points") !=
         std::string::npos);
   CHECK(
@@ -137,7 +139,7 @@ TEST_CASE("mixed materials: two diffuse ones exactly, others by their weight") {
   const std::string other = "Material \"mix\" \"string materials\" [\"a\" \"c\"] \"float amount\" ";
   CHECK(material_of(two + other + "0.7\n").kind == MaterialKind::conductor);
   CHECK(material_of(two + other + "0.2\n").kind == MaterialKind::diffuse);
-  CHECK(has_warning(import_world(two + other + "0.2\n" + triangle), "more weight"));
+  CHECK(has_warning(import_world(two + other + "0.2\n" + triangle), "larger weight"));
   CHECK(reason_of("Material \"mix\" \"string materials\" [\"a\" \"b\"]").find("\"a\"") !=
         std::string::npos);
   std::string nested = two;
@@ -150,7 +152,7 @@ TEST_CASE("mixed materials: two diffuse ones exactly, others by their weight") {
   CHECK(reason_of(nested).find("too deeply") != std::string::npos);
 }
 
-TEST_CASE("a coated metal has both lobes, translucent paper is what it reflects") {
+TEST_CASE("a coated metal has both lobes; translucent paper keeps its reflectance") {
   const Material metal = material_of(
       "Material \"coatedconductor\" \"spectrum conductor.eta\" \"metal-Au-eta\" "
       "\"spectrum conductor.k\" \"metal-Au-k\" \"float conductor.roughness\" 0.3 "
@@ -166,7 +168,7 @@ TEST_CASE("a coated metal has both lobes, translucent paper is what it reflects"
   CHECK(paper.base_color.value.r == doctest::Approx(0.2));
 }
 
-TEST_CASE("checkerboards and mixes of plain colours are what they say") {
+TEST_CASE("checkerboards and mixes of plain colours are exact") {
   const Scene scene = import_world(
       "Texture \"c\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [1 0 0] \"rgb tex2\" [0 0 1] "
       "\"float uscale\" 4 \"float vscale\" 2\nTexture \"m\" \"float\" \"mix\" \"float tex1\" 1 "
@@ -185,7 +187,7 @@ TEST_CASE("checkerboards and mixes of plain colours are what they say") {
     }
 }
 
-TEST_CASE("alpha of shapes is the share of rays that meet them") {
+TEST_CASE("alpha of a shape is the share of rays that hit it") {
   const Scene scene =
       import_world("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"float alpha\" 0.3\n");
   const Material& m = scene.materials.at(scene.meshes.at(0).material);

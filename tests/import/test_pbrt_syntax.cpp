@@ -73,7 +73,7 @@ TEST_CASE("pbrt escapes") {
   CHECK(unescaped("a\\n\\t\\\\\\'\\\"b") == "a\n\t\\'\"b");
 }
 
-TEST_CASE("every form of number and the old ways of writing lists are read") {
+TEST_CASE("all number formats and old list syntax are read") {
   const Scene scene = import_text(
       "Film \"rgb\" \"integer xresolution\" 640 \"integer yresolution\" [ 480 ]\n"
       "Camera \"perspective\" \"float fov\" [9e1]\nWorldBegin\n"
@@ -96,9 +96,9 @@ TEST_CASE("errors of pbrt files name the line and column of what is wrong") {
       {"WorldBegin\n  Shap \"sphere\"", 2, 3, "unknown directive"},
       {"WorldBegin\nShape \"sphere\" \"float radius\" [1", 2, 31, "without ']'"},
       {"WorldBegin\nShape \"sphere", 2, 7, "closing quote"},
-      {"WorldBegin\nShape \"sphere\" \"float radius\" [1 x]", 2, 34, "no value"},
+      {"WorldBegin\nShape \"sphere\" \"float radius\" [1 x]", 2, 34, "not a value"},
       {"WorldBegin\nShape \"sphere\" \"float radius\" []", 2, 16, "one value"},
-      {"WorldBegin\nShape \"sphere\" \"float radius\" \"2\"", 2, 31, "no value"},
+      {"WorldBegin\nShape \"sphere\" \"float radius\" \"2\"", 2, 31, "not a value"},
       {"WorldBegin\nShape \"sphere\" \"string radius\" \"2\"", 2, 16, "of type float"},
       {"WorldBegin\nShape \"sphere\" \"float radius\" 1e999", 2, 16, "not finite"},
       {"WorldBegin\nShape \"sphere\" \"radius\" 1", 2, 16, "type name"},
@@ -191,7 +191,7 @@ TEST_CASE("included files share the state, imported ones give it back") {
   CHECK(scene.spheres[3].centre == Vec3(10, 0, 0));
 }
 
-TEST_CASE("files that include each other twice end with an error, not in the night") {
+TEST_CASE("files that include each other end with an error") {
   const TempFolder folder;
   for (int i = 0; i < 40; ++i) {
     const std::string next = "f" + std::to_string(i + 1) + ".pbrt";
@@ -203,7 +203,7 @@ TEST_CASE("files that include each other twice end with an error, not in the nig
                   InputError);
 }
 
-TEST_CASE("Attribute gives defaults that a block forgets") {
+TEST_CASE("Attribute sets defaults until the end of the block") {
   const Scene scene = import_text(
       "WorldBegin\nAttributeBegin\nAttribute \"shape\" \"float radius\" 3\n"
       "Attribute \"material\" \"rgb reflectance\" [1 0 0]\n"

@@ -57,7 +57,7 @@ TEST_CASE("a mirror before LookAt mirrors the image") {
   CHECK(scene.warnings.entries().empty());
 }
 
-TEST_CASE("the scale of a camera's transform scales what is measured in camera space") {
+TEST_CASE("the scale of a camera's transform scales lengths in camera space") {
   const Scene scene = import_world("",
                                    "Scale .5 .5 .5\nCamera \"orthographic\" "
                                    "\"float lensradius\" 1 \"float focaldistance\" 3");
@@ -164,7 +164,7 @@ TEST_CASE("curved bilinear patches are cut into cells with smooth normals") {
   }
 }
 
-TEST_CASE("spheres and disks stay what they are under similarities") {
+TEST_CASE("spheres and disks stay exact under similarity transforms") {
   const Scene scene = import_world(
       light +
       "Translate 1 2 3 Scale 2 2 2 Rotate 90 1 0 0\nShape \"sphere\" \"float radius\" 3\n"
@@ -268,7 +268,7 @@ TEST_CASE("emission of area lights") {
   CHECK(blinding.warnings.total() == 1);
 }
 
-TEST_CASE("shapes that emit are numbered in order, whatever becomes of them") {
+TEST_CASE("emitting shapes are numbered in order, whatever happens to them") {
   const Scene scene = import_world(
       triangle + light + "Shape \"paraboloid\"\n" + triangle +
       "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 2 0 0]\nShape \"sphere\"\n"
@@ -297,7 +297,7 @@ TEST_CASE("instances are placed by both transforms and do not emit") {
   CHECK(is_near(scene.meshes[0].positions[0], {2, 0, 3}));
 }
 
-TEST_CASE("an avalanche of instances is refused before memory runs out") {
+TEST_CASE("too many nested instances are refused before memory runs out") {
   std::string world = "ObjectBegin \"o\"\n";
   for (int i = 0; i < 2000; ++i) world += "Shape \"sphere\"\n";
   world += "ObjectEnd\n";
@@ -368,7 +368,7 @@ TEST_CASE("modern-hall has thirteen sources that face into the hall") {
   }
 }
 
-TEST_CASE("rgb of other colour spaces becomes linear sRGB by their primaries") {
+TEST_CASE("rgb in other colour spaces becomes linear sRGB by their primaries") {
   const auto scene_of = [](const std::string& space, const std::string& rgb) {
     return import_world("AttributeBegin ColorSpace \"" + space +
                         "\" Material \"diffuse\" \"rgb reflectance\" [" + rgb + "]\n" +

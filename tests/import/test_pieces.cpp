@@ -167,7 +167,7 @@ std::string stl_text(int n) {
 
 }  // namespace
 
-TEST_CASE("PLY in pieces: what is read, warned and refused is that of one piece") {
+TEST_CASE("PLY in pieces: result, warnings and errors equal those of one piece") {
   const TempFolder folder;
   std::mt19937 random(3);
   size_t errors = 0;
@@ -191,7 +191,7 @@ TEST_CASE("PLY in pieces: what is read, warned and refused is that of one piece"
   CHECK(errors < 238);
 }
 
-TEST_CASE("STL text in pieces: what is read, warned and refused is that of one piece") {
+TEST_CASE("STL text in pieces: result, warnings and errors equal those of one piece") {
   const TempFolder folder;
   std::mt19937 random(4);
   const std::string whole = stl_text(25);
@@ -206,7 +206,7 @@ TEST_CASE("STL text in pieces: what is read, warned and refused is that of one p
   CHECK(errors < 79);
 }
 
-TEST_CASE("OBJ in pieces: what is read, warned and refused is that of one piece") {
+TEST_CASE("OBJ in pieces: result, warnings and errors equal those of one piece") {
   const TempFolder folder;
   folder.write("looks.mtl", looks_text);
   std::mt19937 random(6);
@@ -229,7 +229,7 @@ TEST_CASE("OBJ in pieces: what is read, warned and refused is that of one piece"
 }
 
 // The first wrong line is reported, whatever the error and wherever pieces begin.
-TEST_CASE("OBJ in pieces: the first error is told, with its line") {
+TEST_CASE("OBJ in pieces: the first error is reported with its line") {
   const TempFolder folder;
   folder.write("looks.mtl", looks_text);
   folder.write("broken.mtl", "newmtl a\nKd inf 0 0\n");
@@ -257,7 +257,7 @@ TEST_CASE("OBJ in pieces: the first error is told, with its line") {
   has(refused("f 1 2\\\n 0\nmtllib broken.mtl\n"), at(1, 8) + "index 0 of a vertex");
 }
 
-TEST_CASE("reading tells how far it is: forwards, up to the end, one thread at a time") {
+TEST_CASE("progress of reading increases to the end, reported by one thread at a time") {
   const TempFolder folder;
   folder.write("looks.mtl", looks_text);
   std::vector<double> told;
@@ -282,7 +282,7 @@ TEST_CASE("reading tells how far it is: forwards, up to the end, one thread at a
   }
 }
 
-TEST_CASE("welded corners are numbered as they first come") {
+TEST_CASE("welded corners are numbered in order of first appearance") {
   std::mt19937 random(5);
   std::vector<Vec3> corners;
   for (size_t i = 0; i < 600'000; ++i) {  // more than one piece

@@ -129,7 +129,7 @@ TEST_CASE("PLY files cut off anywhere are errors") {
   }
 }
 
-TEST_CASE("counts that lie do not make the reader allocate") {
+TEST_CASE("false counts do not make the reader allocate") {
   const std::string vertex = "property float x\nproperty float y\nproperty float z\n";
   const std::string face = "property list uchar int vertex_indices\n";
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {

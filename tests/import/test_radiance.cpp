@@ -89,7 +89,7 @@ TEST_CASE("closed surfaces have their fronts outside, their counterparts inside"
   CHECK(area_vector(rings.meshes[0], rings.meshes[0].triangles[0]).y > 0);
 }
 
-TEST_CASE("xform: order, arrays, mirrors and pipes") {
+TEST_CASE("xform: order, arrays, mirroring and pipes") {
   const TempFolder folder;
   folder.write("sub/ball.rad", grey + "grey sphere s 0 0 4 1 0 0 .25\n");
   const Scene scene = import_radiance(
@@ -166,7 +166,7 @@ TEST_CASE("Radiance's materials") {
   CHECK(import_text("void sphere s 0 0 4 0 0 0 1").spheres.empty());
 }
 
-TEST_CASE("what a pane of trans sends back and lets through") {
+TEST_CASE("reflection and transmission of a pane of trans") {
   const Scene scene =
       import_text("void trans m 0 0 7 1 1 1 0 0 .6 .5\nm polygon p 0 0 9 0 0 0 1 0 0 0 1 0");
   const Material& m = scene.materials.at(0);
@@ -178,7 +178,7 @@ TEST_CASE("what a pane of trans sends back and lets through") {
   CHECK(scene.warnings.total() == 0);
 }
 
-TEST_CASE("views of comments and of the file beside") {
+TEST_CASE("views from comments and from the file beside the scene") {
   const Scene scene =
       import_text("#@rpict -vtv -vp 1 2 3 -vd 0 2 0 -vu 0 0 1 -vh 90 -vv 53.1301\n");
   const Camera& c = scene.cameras.at(0);
@@ -197,7 +197,7 @@ TEST_CASE("views of comments and of the file beside") {
 }
 
 // Programs write materials and surfaces into separate files.
-TEST_CASE("a modifier that no file here defines is grey, and told of") {
+TEST_CASE("an undefined modifier is grey, with a warning") {
   const Scene scene = import_text("paint polygon p 0 0 9 0 0 0 1 0 0 0 1 0\n" + grey +
                                   "grey polygon q 0 0 9 0 0 1 1 0 1 0 1 1\nvoid plastic paint 0 0 "
                                   "5 .1 .1 .1 0 0\npaint polygon r 0 0 9 0 0 2 1 0 2 0 1 2");
@@ -207,13 +207,13 @@ TEST_CASE("a modifier that no file here defines is grey, and told of") {
   CHECK(scene.materials.at(scene.meshes[2].material).base_color.value == Rgb{0.1f});
 }
 
-TEST_CASE("what cannot be read is an error with its place") {
-  CHECK(error_of(grey + "grey sphere s 0 0 4 1 x") == "scene.rad:2:23: 'x' is no number");
+TEST_CASE("unreadable input is an error with its place") {
+  CHECK(error_of(grey + "grey sphere s 0 0 4 1 x") == "scene.rad:2:23: 'x' is not a number");
   CHECK(error_of(grey + "grey sphere s 0 0 4 1").find("the file ends within") != std::string::npos);
-  CHECK(error_of("void wood w 0 0 0").find("'wood' is no type") != std::string::npos);
+  CHECK(error_of("void wood w 0 0 0").find("'wood' is not a Radiance type") != std::string::npos);
   CHECK(error_of("!xform ../x.rad").find("leads out of the scene's folder") != std::string::npos);
-  CHECK(error_of("!xform scene.rad").find("without end") != std::string::npos);
-  CHECK(error_of("void alias a b\nvoid alias b a\na sphere s 0 0 4 0 0 0 1").find("without end") !=
+  CHECK(error_of("!xform scene.rad").find("endlessly") != std::string::npos);
+  CHECK(error_of("void alias a b\nvoid alias b a\na sphere s 0 0 4 0 0 0 1").find("endlessly") !=
         std::string::npos);
   CHECK(error_of(grey + "!genbox grey b 1 1 1 | xform -a 1000 -t 1 0 0 -a 1000 -t 0 1 0")
             .find("100000 copies") != std::string::npos);
@@ -224,7 +224,7 @@ TEST_CASE("what cannot be read is an error with its place") {
                        doctest::Contains("give the .rad file"), InputError);
 }
 
-TEST_CASE("changed Radiance files load or are refused") {
+TEST_CASE("mutated Radiance files load or are refused") {
   const TempFolder folder;
   const std::string text =
       grey + bright +

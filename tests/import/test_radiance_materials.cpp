@@ -42,7 +42,7 @@ TEST_CASE("mixfunc blends by its function") {
   CHECK(worn(mixed("7")).base_color.value.r == doctest::Approx(.2));  // clamped
   const Scene stripes = mixed("if(frac(Px)-.75,1,0)");                // a quarter of the surface
   CHECK(worn(stripes).base_color.value.r == doctest::Approx(.5).epsilon(0.01));
-  CHECK(has_warning(stripes, "varies from place to place"));
+  CHECK(has_warning(stripes, "varies over the surface"));
   const Scene holes = mixed("A1", "a void");
   CHECK(worn(holes).is_alpha_blended);
   CHECK(worn(holes).alpha.value == 0.25f);
@@ -70,7 +70,7 @@ TEST_CASE("a glow with a negative radius gives no light") {
               .lights.size() == 1);
 }
 
-TEST_CASE("patterns that are the same everywhere are factors") {
+TEST_CASE("constant patterns are factors") {
   const std::string dim = "void brightfunc d 2 A1 . 0 1 .5\n";
   CHECK(worn(import_text(dim + "d plastic m 0 0 5 .8 .8 .8 0 0\nm" + square)).base_color.value.r ==
         doctest::Approx(.4));
@@ -82,11 +82,11 @@ TEST_CASE("patterns that are the same everywhere are factors") {
   const Scene varied =
       import_text("void brightfunc d 2 Px . 0 0\nd light m 0 0 3 10 10 10\nm" + square);
   CHECK(varied.lights.at(0).radiance == Rgb{10});
-  CHECK(has_warning(varied, "varies from place to place"));
+  CHECK(has_warning(varied, "varies over the surface"));
 }
 
 // E = L A cos / (d + f)², where f is the length of the aiming vector.
-TEST_CASE("spotlight: its focal distance, its beam, whatever surface it is on") {
+TEST_CASE("spotlight: focal distance and beam are correct on any surface") {
   const auto spot = [](const std::string& aim, const std::string& surface) {
     return import_text("void spotlight s 0 0 7 1000 1000 1000 30 " + aim + "\ns " + surface);
   };

@@ -58,7 +58,7 @@ const Vec3d to_sun{0.4, -0.6, 0.69282};
 
 }  // namespace
 
-TEST_CASE("gensky's skies, by the formulas that its manual page names") {
+TEST_CASE("gensky's skies follow the formulas of its manual page") {
   const double from_zenith = std::acos(to_sun.z);
   const auto clear = [&](const Vec3d& w) {
     const double c = dot(w, to_sun), gamma = std::acos(std::clamp(c, -1.0, 1.0));
@@ -103,7 +103,7 @@ TEST_CASE("gensky's skies, by the formulas that its manual page names") {
 }
 
 // The illuminances were integrated independently from the published definitions.
-TEST_CASE("illuminance by skies as the generators print them") {
+TEST_CASE("skies printed by the generators give the expected illuminance") {
   struct Known {
     const char *pattern, *reals;
     double lux;
@@ -125,7 +125,7 @@ TEST_CASE("illuminance by skies as the generators print them") {
   }
 }
 
-TEST_CASE("gendaylit: the sun it prints, its sky of an impossible hour, its sky in colour") {
+TEST_CASE("gendaylit: its sun, its sky for an impossible hour, and its coloured sky") {
   const Scene day = import_text(
       "void light solar\n0\n0\n3 6.646e+06 6.646e+06 6.646e+06\n\nsolar source sun\n0\n0\n"
       "4 0.400000 -0.600000 0.692820 0.533000\n\nvoid brightfunc skyfunc\n"
@@ -150,7 +150,7 @@ TEST_CASE("gendaylit: the sun it prints, its sky of an impossible hour, its sky 
   CHECK(e.b / e.g == doctest::Approx((1.1772 - .2519 - .0747) / (1.9783 - 1.0221 + .0438)));
 }
 
-TEST_CASE("a sky's function is looked up, turned, or refused by name") {
+TEST_CASE("a sky's function is evaluated, rotated, or refused by name") {
   const TempFolder folder;
   folder.write("own.cal",
                "{ brighter to the east }\nbright(d) = if(d, 1 + 3*d, 1);\neast : bright(Dx);");
@@ -181,7 +181,7 @@ TEST_CASE("a sky's function is looked up, turned, or refused by name") {
   folder.write("endless.cal", "a(x) = a(x + 1);\nb = a(1);");
   CHECK_THROWS_WITH_AS(
       import_radiance(folder.write("e.rad", "void brightfunc f 2 b endless.cal 0 0\nf" + sky)),
-      doctest::Contains("does not come to an end"), InputError);
+      doctest::Contains("does not end"), InputError);
 }
 
 // A source of full angle 2 h, seen along its axis, gives an irradiance of pi sin² h per radiance.
@@ -203,7 +203,7 @@ TEST_CASE("sources of any width") {
   CHECK(all.lights.at(0).kind == LightKind::environment);
 }
 
-TEST_CASE("the language of function files") {
+TEST_CASE("the language of function files is evaluated correctly") {
   CalProgram p;
   p.read(std::make_shared<const std::string>("x.cal"),
          "{ a { nested } comment } fact(n) : if(n - 1.5, n*fact(n - 1), 1);\n"

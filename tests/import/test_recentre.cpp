@@ -139,7 +139,7 @@ TEST_CASE("OBJ: a polygon far away; triangles without area do not count") {
   CHECK(is_same(corners(far), corners(near)));
 }
 
-TEST_CASE("a scene too large for floats is told, with the step it is rounded to") {
+TEST_CASE("a scene too large for floats causes a warning with the rounding step") {
   const auto triangle = [](double side, double x) {
     return pbrt(fmt::format(
         "WorldBegin Shape \"trianglemesh\" \"point3 P\" [{0} 0 0 {1} 0 0 {0} 1 0]", x, x + side));

@@ -102,7 +102,7 @@ TEST_CASE("includes, meshes and function files are found too") {
             .meshes.size() == 1);
 }
 
-TEST_CASE("other names never lead out of the folder, and the file of that very name goes first") {
+TEST_CASE("other spellings never lead out of the folder, and an exact match has priority") {
   const TempFolder folder;
   folder.write("secret.txt", "x");
   folder.write("inner/a.txt", "x");

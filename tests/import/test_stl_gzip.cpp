@@ -103,7 +103,7 @@ TEST_CASE("files that end in .gz are decompressed: scenes, and meshes that they 
   CHECK(read_text_file(folder.write("two.gz", gzipped("one ") + gzipped("two"))) == "one two");
 }
 
-TEST_CASE("compressed files that are cut, damaged, or become too much are errors") {
+TEST_CASE("compressed files that are cut, damaged or too large are errors") {
   const TempFolder folder;
   const std::string whole = gzipped("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   for (size_t n = 1; n < whole.size(); ++n)

@@ -77,7 +77,7 @@ TEST_CASE("every texture is looked up by its own set of coordinates") {
   }
 }
 
-TEST_CASE("meshes with one set carry no second one, and lights and holes know the first") {
+TEST_CASE("meshes with one set store no second one; lights and masks use the first") {
   Built built;
   Scene scene = built.load("{'pbrMetallicRoughness':{'baseColorTexture':{'index':0}}}");
   CHECK(scene.meshes[0].uvs_2.empty());
@@ -94,7 +94,7 @@ TEST_CASE("meshes with one set carry no second one, and lights and holes know th
   CHECK(scene.meshes[0].uvs[2] == Vec2{1, 0});
 }
 
-TEST_CASE("a third set, and sets that are not there, are told") {
+TEST_CASE("a third set and missing sets cause warnings") {
   Built built;
   const Scene scene = built.load(
       "{'pbrMetallicRoughness':{'baseColorTexture':{'index':0,'texCoord':1},"

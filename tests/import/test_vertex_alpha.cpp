@@ -43,7 +43,7 @@ float coverage_at_corner(const Scene& s, size_t corner) {
 
 }  // namespace
 
-TEST_CASE("alpha of vertices blends, whatever the material's own") {
+TEST_CASE("vertex alpha multiplies the alpha of blended materials") {
   for (const double factor : {1.0, 0.5}) {
     CAPTURE(factor);
     const Scene even = sheet({.25f, .25f, .25f, .25f}, "BLEND", factor);
@@ -55,8 +55,7 @@ TEST_CASE("alpha of vertices blends, whatever the material's own") {
   }
 }
 
-TEST_CASE(
-    "alpha of vertices counts for nothing where the material is opaque, and cuts where it masks") {
+TEST_CASE("vertex alpha is ignored by opaque materials and cuts holes in masked ones") {
   CHECK(coverage_at_corner(sheet({.25f, .25f, .25f, .25f}, "OPAQUE", 1), 0) == 1);
   CHECK(coverage_at_corner(sheet({.25f, .25f, .25f, .25f}, "MASK", 1), 0) == 0);
   CHECK(coverage_at_corner(sheet({.75f, .75f, .75f, .75f}, "MASK", 1), 0) == 1);

@@ -209,7 +209,7 @@ TEST_CASE("bintree: no ray is lost or cast twice while a tree grows") {
   }
 }
 
-TEST_CASE("bintree: what it believes when it stops, and the cap") {
+TEST_CASE("bintree: its error estimate when it stops, and the cap") {
   Random random(4);
   for (int k = 0; k < 300; ++k) {
     BintreeOptions o;
@@ -245,7 +245,7 @@ TEST_CASE("bintree: what it believes when it stops, and the cap") {
   }
 }
 
-TEST_CASE("rule 5: the second stop waits for enough rays and then saves some") {
+TEST_CASE("rule 5: the second stopping rule waits for enough rays and then saves some") {
   BintreeOptions o;
   o.allowed_variance = 0.02f;
   o.most_rays = 1024;
@@ -267,7 +267,7 @@ TEST_CASE("rule 5: the second stop waits for enough rays and then saves some") {
   CHECK(rays[1] < 0.5 * rays[0]);
 }
 
-TEST_CASE("bintree: rays gather at the edge") {
+TEST_CASE("bintree: rays concentrate at the shadow edge") {
   BintreeOptions o;
   o.allowed_variance = 0.03f;
   o.most_rays = 512;
@@ -327,7 +327,8 @@ TEST_CASE("bintree: kernels weigh visibility; the allowance is relative to the u
   CHECK(double(a.estimate().mean) == doctest::Approx(1).epsilon(0.01));
 }
 
-TEST_CASE("bintree: depends on the stream alone; no memory is taken after the first point") {
+TEST_CASE(
+    "bintree: results depend on the stream alone; no memory is allocated after the first point") {
   const ConvexOccluder edge = half_plane({0.43, 0.5}, 1.2);
   BintreeOptions o;
   o.allowed_variance = 0.03f;
@@ -352,7 +353,7 @@ TEST_CASE("bintree: depends on the stream alone; no memory is taken after the fi
   CHECK(used.nodes().capacity() == capacity);
 }
 
-TEST_CASE("bintree: time that a ray costs beside its tracing") {
+TEST_CASE("bintree: overhead per ray besides tracing") {
   BintreeOptions o;
   o.allowed_variance = 0.05f;
   Bintree tree(o);

@@ -45,7 +45,7 @@ bool is_sound(const ShadowPattern& p) {
 
 }  // namespace
 
-TEST_CASE("leaves larger than cells speak for all of them") {
+TEST_CASE("leaves larger than lattice cells set all of them") {
   for (const int rays : {1, 2, 4, 8, 16, 32}) {
     const ShadowPattern lit = pattern_of(tree_over(rays, [](Vec2) { return true; }).nodes());
     CHECK(lit.lit == ~uint64_t(0));
@@ -65,7 +65,7 @@ TEST_CASE("leaves larger than cells speak for all of them") {
   CHECK(below.dark == 0xffffffff00000000ull);
 }
 
-TEST_CASE("leaves as large as cells: each its own; smaller ones agree or are mixed") {
+TEST_CASE("leaves as large as lattice cells set one each; smaller ones agree or are mixed") {
   Random random(3);
   for (int i = 0; i < 50; ++i) {
     const uint64_t wanted = (uint64_t(random.next_u32()) << 32) | random.next_u32();
@@ -85,7 +85,7 @@ TEST_CASE("leaves as large as cells: each its own; smaller ones agree or are mix
   CHECK(p.mixed() == ~uint64_t(0));
 }
 
-TEST_CASE("trees grown adaptively: an edge is mixed or told rightly, far from it all is definite") {
+TEST_CASE("adaptive trees: cells at an edge are mixed or correct, cells far from it are definite") {
   for (uint64_t seed = 0; seed < 40; ++seed) {
     Random random(seed);
     const float slope = random.next_float() - 0.5f, at = 0.2f + 0.6f * random.next_float();
@@ -96,7 +96,7 @@ TEST_CASE("trees grown adaptively: an edge is mixed or told rightly, far from it
   }
 }
 
-TEST_CASE("doubt and difference: symmetric, bounded, nothing against itself") {
+TEST_CASE("doubt and difference are symmetric, bounded, and zero against the pattern itself") {
   Random random(4);
   for (int i = 0; i < 2000; ++i) {
     const ShadowPattern a = random_pattern(random), b = random_pattern(random),
@@ -124,7 +124,7 @@ TEST_CASE("doubt and difference: symmetric, bounded, nothing against itself") {
   CHECK(cells_in_doubt(mixed, mixed) == ~uint64_t(0));
 }
 
-TEST_CASE("cells of the lattice: together the square, in the order of the bits") {
+TEST_CASE("lattice cells cover the square in the order of the bits") {
   float sum = 0;
   for (int i = 0; i < ShadowPattern::cells; ++i) {
     const SourceCell c = pattern_cell(i);

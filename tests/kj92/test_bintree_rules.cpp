@@ -47,7 +47,7 @@ struct Planted {
 
 }  // namespace
 
-TEST_CASE("rule 1: initial rays are even, one to a cell, all pending") {
+TEST_CASE("rule 1: initial rays are uniform, one per cell, all pending") {
   for (int level = 0; level <= 6; ++level) {
     const Planted p(level);
     CHECK(p.pending.size() == size_t(1) << level);
@@ -67,7 +67,7 @@ TEST_CASE("rule 3a: the only child in penumbra is taken") {
   CHECK(choose_leaf(p.t) == p.at(3, 0.9f, 0.9f));
 }
 
-TEST_CASE("rule 3b: of two in penumbra the one with fewer samples is taken") {
+TEST_CASE("rule 3b: of two children in penumbra the one with fewer samples is taken") {
   Planted p(3);
   p.split(3, 0.1f, 0.9f);
   p.answer([](float, float v) { return v > 0.5f; });
@@ -79,7 +79,8 @@ TEST_CASE("rule 3b: of two in penumbra the one with fewer samples is taken") {
   CHECK(choose_fewer_samples(p.t, b, b - 1) == b);
 }
 
-TEST_CASE("rule 3c: of two without penumbra the one that differs from its neighbours is taken") {
+TEST_CASE(
+    "rule 3c: of two children without penumbra the one that differs from its neighbours is taken") {
   Planted p(4);
   // of 16 cells only the upper right one in the lower left quarter is dark
   p.answer([](float u, float v) { return !(u > 0.25f && u < 0.5f && v > 0.25f && v < 0.5f); });

@@ -50,7 +50,7 @@ bool is_general(const SourceClass& c) {
 
 }  // namespace
 
-TEST_CASE("hidden at all points: a strong source is probed, a weak one is left alone") {
+TEST_CASE("hidden at all points: a strong source is probed, a weak one is ignored") {
   const SourceClass strong = class_of(seen(5, {0, 0, 0.003f}));
   CHECK(strong.view == SourceView::occluded);
   CHECK(strong.treatment == SourceTreatment::probed);
@@ -82,7 +82,7 @@ TEST_CASE("a weak source with a visible shadow edge is sampled, one without is n
   CHECK(class_of(seen(2, {0.5f, 0.5f})).treatment == SourceTreatment::sampled);  // strong
 }
 
-TEST_CASE("thresholds hold at their very values") {
+TEST_CASE("thresholds include their exact values") {
   SelectionThresholds t;
   t.occluded_below = 0.25f;
   t.visible_above = 0.75f;
@@ -109,7 +109,7 @@ TEST_CASE("thresholds hold at their very values") {
   CHECK(at({{0, 0.0626f, 1}, {1, 1, 1}}).view == SourceView::partly);
 }
 
-TEST_CASE("points that do not count, and none that does") {
+TEST_CASE("points that do not count, and patches with no points that count") {
   for (const Points& points : {Points{}, Points{{0, 0, 0}}, Points{{0, 0, 1}},
                                Points{{0, 1e-6f, 1}}, Points{{0, 0, 1}, {0, 1e-6f, 1}}}) {
     const SourceClass c = class_of(points, 1);
@@ -123,7 +123,7 @@ TEST_CASE("points that do not count, and none that does") {
   CHECK(class_of({{0, 0, 1}, {2, 2, 3}, {2, 2, 3}}).view == SourceView::visible);
 }
 
-TEST_CASE("dark points are measured against the patch's mean, dark patches against themselves") {
+TEST_CASE("dark points are compared with the patch's mean, dark patches with themselves") {
   // A dark corner of a bright patch receives little in total.
   CHECK(is_general(class_of({{0.004f, 0.008f, 0.004f}, {0.004f, 0.008f, 1}, {0, 0, 2}}, 1)));
   // The same light on a patch that is dark everywhere is important.
@@ -131,7 +131,7 @@ TEST_CASE("dark points are measured against the patch's mean, dark patches again
         SourceTreatment::sampled);
 }
 
-TEST_CASE("what holds for any points") {
+TEST_CASE("invariants for arbitrary points") {
   Random random(1);
   int sampled = 0, probed = 0, general = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -193,7 +193,7 @@ TEST_CASE("a partly hidden source that grows never falls out of sampling") {
   CHECK(rises > 3000);
 }
 
-TEST_CASE("in the dark a hidden source is probed, however dark it is") {
+TEST_CASE("on a dark patch a hidden source is probed, however weak it is") {
   const std::vector<SourceAtPoint> dark{{0, 3, 0}, {0, 2, 0}};
   const SourceClass c = classify(dark, 0, {});
   CHECK(c.view == SourceView::occluded);

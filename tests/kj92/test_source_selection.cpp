@@ -184,7 +184,9 @@ bool is_same(const SourceSelection& a, const SourceSelection& b, const Radiosity
 
 }  // namespace
 
-TEST_CASE("selected + general = all that the preprocessing found, at every corner of every patch") {
+TEST_CASE(
+    "selected plus general light equals all light of the preprocessing, at every corner of every "
+    "patch") {
   for (const uint32_t stored : {1u, 4u}) {
     const Selected s(three_lamps(), coarse(stored));
     const Sums sums = check_sums(s, s.selection);
@@ -199,7 +201,7 @@ TEST_CASE("selected + general = all that the preprocessing found, at every corne
   }
 }
 
-TEST_CASE("… with bright patches among the sources too") {
+TEST_CASE("selected plus general light is complete with bright patches among the sources too") {
   RadiosityOptions o = coarse(8);
   o.tolerance = 1e-3f;
   const Selected s(uplight(), o);
@@ -209,7 +211,7 @@ TEST_CASE("… with bright patches among the sources too") {
                      << ", of which not kept somewhere " << sums.inexact);
 }
 
-TEST_CASE("lists are in order, name existing sources, and leave out what is general") {
+TEST_CASE("source lists are sorted, contain existing sources, and leave out general light") {
   const Selected s(uplight(), coarse(8));
   for (uint32_t p = 0; p < s.solution.mesh.patches.size(); ++p) {
     uint32_t last = no_source;
@@ -252,7 +254,7 @@ TEST_CASE("a strong source that is wholly hidden is never sampled, only probed")
   CHECK(probed > 4);
 }
 
-TEST_CASE("a weak source that throws an edge that can be seen is sampled") {
+TEST_CASE("a weak source with a visible shadow edge is sampled") {
   // The weak lamp is just above a screen's edge; the strong one lights the whole floor evenly.
   Scene s;
   const uint32_t floor =
@@ -276,7 +278,7 @@ TEST_CASE("a weak source that throws an edge that can be seen is sampled") {
   CHECK(floor == 0);
 }
 
-TEST_CASE("open floors of one lamp: nothing is sampled, all of it probed") {
+TEST_CASE("open floors under one lamp: nothing is sampled, everything is probed") {
   Scene s;
   add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
   add_lamp(s, {1.5f, 1.5f, 2}, 1, Rgb{10});
@@ -291,7 +293,7 @@ TEST_CASE("open floors of one lamp: nothing is sampled, all of it probed") {
   }
 }
 
-TEST_CASE("restriction and switching off") {
+TEST_CASE("selection can be restricted and switched off") {
   const Selected s(three_lamps());
   const SourceSelection only = s.again({true, {}, true, true, {2}});
   const SourceSelection none = s.again({true, {}, true, true, {}});
@@ -318,7 +320,7 @@ TEST_CASE("the same selection for any number of threads") {
   for (const int threads : {1, 3, 5}) CHECK(is_same(s.selection, s.again({}, threads), s.solution));
 }
 
-TEST_CASE("scenes that hardly are any") {
+TEST_CASE("nearly empty scenes") {
   Scene dark = lit_room(0.5f);
   dark.lights[0].radiance = Rgb{0};
   Scene no_lamp;

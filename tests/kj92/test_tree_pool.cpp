@@ -83,7 +83,7 @@ TEST_CASE("trees in use are never given away") {
   CHECK(&first != &pool.acquire(key(0), up, true));
 }
 
-TEST_CASE("an address stays what it is while others are acquired") {
+TEST_CASE("an address stays valid while others are acquired") {
   TreePool pool{BintreeOptions{}};
   pool.release_all();
   TreePool::Entry& first = pool.acquire(key(0), up, true);
@@ -91,7 +91,7 @@ TEST_CASE("an address stays what it is while others are acquired") {
   CHECK(first.key == key(0));
 }
 
-TEST_CASE("after forget() the past does not matter") {
+TEST_CASE("after forget() earlier use has no effect") {
   for (uint64_t seed = 0; seed < 30; ++seed) {
     // The thread's past: nothing, few vertices, or vertices of hundreds of sources.
     for (const uint32_t past : {0u, 20u, 130u, 400u}) {
@@ -107,7 +107,7 @@ TEST_CASE("after forget() the past does not matter") {
   }
 }
 
-TEST_CASE("memory of the pool stays within what is in use, or a hundred") {
+TEST_CASE("the pool's memory stays within the trees in use, or a hundred") {
   TreePool pool{BintreeOptions{}};
   pool.forget();
   std::set<const TreePool::Entry*> all;

@@ -29,10 +29,10 @@ TEST_CASE("upper_angle is atan2 for y >= 0") {
   CHECK(upper_angle(0.0, 0.0) == 0);
 }
 
-TEST_CASE("sine and cosine of what is no angle are those of 0 or of a whole turn") {
-  for (const float any : {std::numeric_limits<float>::quiet_NaN(),
-                          std::numeric_limits<float>::infinity(),
-                          -std::numeric_limits<float>::infinity()}) {
+TEST_CASE("sine and cosine of invalid angles are those of 0 or of a full turn") {
+  for (const float any :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+        -std::numeric_limits<float>::infinity()}) {
     float s = 2, c = 2;
     sine_cosine(any, s, c);
     CHECK(std::abs(s) < 1e-6f);

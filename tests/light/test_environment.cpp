@@ -55,7 +55,7 @@ Scene with_map(const EnvironmentMap& map) {
 
 }  // namespace
 
-TEST_CASE("directions of an image are drawn as their density says, and can be inverted") {
+TEST_CASE("directions of an image follow their density and can be inverted") {
   const double significance = sidak(1e-4, std::size(cases));
   for (const Case& c : cases) {
     CAPTURE(c.width);
@@ -104,7 +104,7 @@ TEST_CASE("directions of an image are drawn as their density says, and can be in
   }
 }
 
-TEST_CASE("luminance over density is the same for all samples of an equal-area image") {
+TEST_CASE("luminance over density is constant for all samples of an equal-area image") {
   const EnvironmentMap map = random_map(SphereMap::equal_area, 32, 32, 9);
   const DirectionTable table = direction_table(map);
   Random random(4);
@@ -116,7 +116,7 @@ TEST_CASE("luminance over density is the same for all samples of an equal-area i
   }
 }
 
-TEST_CASE("an image's light is what rays by chance see, weighed by the same density") {
+TEST_CASE("the light of an image agrees with random rays weighted by the same density") {
   for (const Case& c : cases) {
     const Scene s = with_map(random_map(c.projection, c.width, c.height, 11));
     const LightPrimitives lights(s);
@@ -197,7 +197,7 @@ TEST_CASE("a sky's and a sun's samples: density, radiance, irradiance") {
   CHECK(sun_drawn == doctest::Approx(pi * 50000 * std::pow(std::sin(0.00465), 2)).epsilon(1e-4));
 }
 
-TEST_CASE("a web: intensities between its angles, and a flux that they add up to") {
+TEST_CASE("a web interpolates between its angles, and its intensities add up to its flux") {
   LightWeb web;
   web.vertical_angles_rad = {0, 0.6f, 1.2f, 1.8f};
   web.horizontal_angles_rad = {0, 1, 3, 2 * pi_f};

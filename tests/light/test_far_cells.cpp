@@ -72,7 +72,7 @@ Seen look_round(const Scene& scene, const LightPrimitives& primitives, const Sky
 
 }  // namespace
 
-TEST_CASE("far cells of a sky: every direction lies in one, of the sky's radiance") {
+TEST_CASE("sky patches: every direction lies in one, with the sky's radiance") {
   for (const Vec3 zenith : {Vec3{0, 0, 1}, Vec3{0, 1, 0}, Vec3{0.3f, -0.5f, 0.8f}}) {
     Scene scene = unit_floor();
     scene.lights.push_back(clear_sky(zenith));
@@ -89,7 +89,7 @@ TEST_CASE("far cells of a sky: every direction lies in one, of the sky's radianc
   }
 }
 
-TEST_CASE("far cells of an even environment are six, of one radiance") {
+TEST_CASE("sky patches of a uniform environment: six with one radiance") {
   Scene scene = unit_floor();
   add_environment(scene, Rgb{3});
   const LightPrimitives primitives(scene);
@@ -100,7 +100,7 @@ TEST_CASE("far cells of an even environment are six, of one radiance") {
   CHECK(seen.error < 1e-6);
 }
 
-TEST_CASE("far cells of an image are cut where its energy is, and send all of it") {
+TEST_CASE("sky patches of an image are divided where its energy is, and send all of it") {
   Scene scene = unit_floor();
   EnvironmentMap map;
   map.width = 256;
@@ -141,7 +141,7 @@ TEST_CASE("far cells of an image are cut where its energy is, and send all of it
   CHECK(cells.all().size() < 200);
 }
 
-TEST_CASE("a sun is a disk of its own angle") {
+TEST_CASE("a sun is a disk with its angular size") {
   Scene scene = unit_floor();
   Light e;
   e.kind = LightKind::sun;

@@ -206,7 +206,8 @@ TEST_CASE("sphere: above the horizon, cut by it, touching, inside") {
   CHECK(sphere_irradiance({0, 0, 3}, 1, {}, {0, 0, 1}, Sides::front, true) == 0);
 }
 
-TEST_CASE("rectangles from everywhere, receivers tilted through 180 degrees, against quadrature") {
+TEST_CASE(
+    "rectangles at arbitrary places, receivers tilted through 180 degrees, against quadrature") {
   const double a = 1, b = 0.7;
   const std::vector<Vec3d> source{{0, 0, 0}, {a, 0, 0}, {a, b, 0}, {0, b, 0}};
   const Scene scene = polygon_scene(source, false, Pose{Framed(Vec3d{0, 0, 1}), {}});
@@ -230,7 +231,7 @@ TEST_CASE("rectangles from everywhere, receivers tilted through 180 degrees, aga
     }
 }
 
-TEST_CASE("disks from everywhere, receivers tilted through 180 degrees, against quadrature") {
+TEST_CASE("disks at arbitrary places, receivers tilted through 180 degrees, against quadrature") {
   const double radius = 0.8;
   const std::vector<Vec3d> directions{{0, 0, 1}, {0.6, 0, 0.8}, {0.5, 0.7, 0.1}, {-0.9, 0.3, 0.01}};
   const std::vector<Vec3d> starts{{0, 0, 0}, {0.3, -0.5, 0}, {0.8, 0, 0}, {0, 0.79, 0}};

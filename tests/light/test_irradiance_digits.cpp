@@ -26,7 +26,7 @@ struct Worst {
 
 }  // namespace
 
-TEST_CASE("polygons and parts of parallelograms hold their digits") {
+TEST_CASE("polygons and parts of parallelograms keep their precision") {
   Worst polygon, cell;
   for (uint64_t seed = 0; seed < 4000; ++seed) {
     Random r(seed);
@@ -53,7 +53,7 @@ TEST_CASE("polygons and parts of parallelograms hold their digits") {
   CHECK(cell.error < 1e-4);
 }
 
-TEST_CASE("disks and spheres hold their digits") {
+TEST_CASE("disks and spheres keep their precision") {
   Worst disk, sphere;
   for (uint64_t seed = 0; seed < 1500; ++seed) {
     Random r(seed + 9000);

@@ -83,14 +83,14 @@ TEST_CASE("LM-63-2019: the file generation type is a code; in older editions a f
   }
 }
 
-TEST_CASE("absolute photometry is told apart from lamps without lumens") {
+TEST_CASE("absolute photometry is distinguished from lamps without lumens") {
   CHECK(read(even_ies("IESNA:LM-63-2002", "1")).luminaire.is_absolute);
   std::string relative = even_ies("IESNA:LM-63-2002", "1");
   relative.replace(relative.find("1 -1"), 4, "1 800");
   CHECK_FALSE(read(relative).luminaire.is_absolute);
 }
 
-TEST_CASE("type C: planes that nearly end at 90 or 180 keep the symmetry") {
+TEST_CASE("type C: planes that end near 90 or 180 keep the symmetry") {
   for (const char* turns : {"0 45 90", "0 45 89.99", "0 45 90.01", "0.01 45 90", "0 45 89.5",
                             "-0.01 45 90", "90 45 0", "89.99 45 0.01"}) {
     CAPTURE(turns);
@@ -123,7 +123,7 @@ TEST_CASE("type C: planes that nearly end at 90 or 180 keep the symmetry") {
   CHECK(round.warnings == 0);
 }
 
-TEST_CASE("planes in steps of less than two degrees are not taken for an end beside them") {
+TEST_CASE("planes in steps below two degrees are not taken for a nearby end") {
   // 90 planes, one per degree: the last is at 89, so no plane closes the quarter.
   std::string turns;
   std::vector<int> values;
@@ -146,7 +146,7 @@ TEST_CASE("planes in steps of less than two degrees are not taken for an end bes
   CHECK(all.warnings == 0);
 }
 
-TEST_CASE("vertical angles that begin beside the nadir go on to it") {
+TEST_CASE("vertical angles that begin near the nadir are extended to it") {
   const auto at_nadir = [](const std::string& heights, size_t& warnings) {
     const Read r = read("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 10\n" + heights +
                         "\n0\n100 100 100\n");
@@ -174,7 +174,7 @@ TEST_CASE("vertical angles that begin beside the nadir go on to it") {
   CHECK(warnings == 0);
 }
 
-TEST_CASE("a table by the middles of its zones has the flux of its zones") {
+TEST_CASE("a table at zone centres has the flux of its zones") {
   // A uniform hemisphere of 100 cd: 200 pi lm.
   std::string heights, values;
   for (int i = 0; i < 18; ++i) {
@@ -188,7 +188,7 @@ TEST_CASE("a table by the middles of its zones has the flux of its zones") {
   CHECK(candela(r.luminaire, 0, 91) == 0);
 }
 
-TEST_CASE("types A and B: angles that nearly begin at 0 stand for both sides") {
+TEST_CASE("types A and B: angles that begin near 0 apply to both sides") {
   for (const int type : {2, 3}) {
     CAPTURE(type);
     const auto web_of = [&](const std::string& heights, const std::string& turns) {
@@ -206,7 +206,7 @@ TEST_CASE("types A and B: angles that nearly begin at 0 stand for both sides") {
   }
 }
 
-TEST_CASE("EULUMDAT: symmetry and nadir by angles that are nearly right") {
+TEST_CASE("EULUMDAT: symmetry and nadir with slightly wrong angles") {
   const auto ldt = [](int symmetry, const std::vector<double>& turns, const std::string& heights,
                       const std::vector<std::string>& values) {
     std::string text = fmt::format(

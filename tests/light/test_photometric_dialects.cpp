@@ -199,7 +199,7 @@ TEST_CASE("LM-63 of type C: any edition, symmetry, unit, layout and direction of
         }
 }
 
-TEST_CASE("LM-63 of type C: planes of halves that begin elsewhere") {
+TEST_CASE("LM-63 of type C: half-planes that begin elsewhere") {
   WarningLog warnings;
   const auto read = [&](Symmetry s, const std::vector<double>& planes) {
     std::string text = "TILT=NONE\n" + layouts[0].numbers({1, -1, 1, double(heights.size()),
@@ -239,7 +239,7 @@ TEST_CASE("LM-63: decimal commas, UTF-16, and factors of 0") {
   CHECK(warnings.entries().size() == 2);
 }
 
-TEST_CASE("EULUMDAT: all symmetries, line ends, commas and what stands behind numbers") {
+TEST_CASE("EULUMDAT: all symmetries, line ends, commas and text after numbers") {
   const TempFolder folder;
   for (const Symmetry s : symmetries)
     for (const char* line_end : {"\n", "\r\n", "\r", " \r\n", "\r\r\n"})

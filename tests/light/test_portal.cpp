@@ -55,7 +55,7 @@ bool meets(const Vec3& x, const Vec3& wi, Vec2& at) {
 
 }  // namespace
 
-TEST_CASE("directions through a portal fill it as their density says, from everywhere inside") {
+TEST_CASE("directions through a portal follow their density, from everywhere inside") {
   const double significance = sidak(1e-4, 2 * int(std::size(places)));
   for (const bool has_image : {false, true}) {
     const Scene s = with_portal(has_image);
@@ -106,7 +106,7 @@ TEST_CASE("directions through a portal fill it as their density says, from every
   }
 }
 
-TEST_CASE("an image is drawn through a portal in proportion to what it shows") {
+TEST_CASE("an image is sampled through a portal in proportion to its visible light") {
   const Scene s = with_portal(true);
   Scene open = s;
   open.lights[0].portal.clear();
@@ -151,7 +151,7 @@ TEST_CASE("beside a portal and behind it there is no light") {
   CHECK(double(p.power) == doctest::Approx(2 * pi * 2));
 }
 
-TEST_CASE("what a portal shows to a box is proved, never contradicted") {
+TEST_CASE("certificates of what a portal shows to a box are never contradicted") {
   const Portal portal(window, 4, [](const Vec3&) { return 1.0f; });
   Random random(21);
   size_t proofs[3] = {};
@@ -186,7 +186,7 @@ TEST_CASE("what a portal shows to a box is proved, never contradicted") {
   for (const size_t n : proofs) CHECK(n > 100);
 }
 
-TEST_CASE("the frame of a portal hides what it does not show, as far as it reaches") {
+TEST_CASE("the frame of a portal hides everything outside its opening, within its reach") {
   const Portal portal(window, 4, [](const Vec3&) { return 1.0f; });
   constexpr double reach = 20;
   const auto frame = portal.frame(reach);
@@ -229,7 +229,7 @@ TEST_CASE("the frame of a portal hides what it does not show, as far as it reach
     CHECK_FALSE(portal.is_framed(reach, box, {to, {0, 1e4, 0}, {0, 0, 1e4}, {-1, 0, 0}}));
 }
 
-TEST_CASE("a sun through a portal: of its disc what the portal shows") {
+TEST_CASE("a sun through a portal: the part of its disc that the portal shows") {
   Scene s = with_portal(false);
   s.lights[0].kind = LightKind::sun;
   s.lights[0].direction = normalize(Vec3{-1, 0, -0.5f});
@@ -243,7 +243,7 @@ TEST_CASE("a sun through a portal: of its disc what the portal shows") {
   CHECK_FALSE(sample(s, lights[0], {4, 0, 0.5f}, {0.3f, 0.7f}, out));
 }
 
-TEST_CASE("cells of an even light before a portal hold all that it shows, once") {
+TEST_CASE("cells of uniform light behind a portal contain all that it shows, once") {
   const Scene s = with_portal(false);
   const LightPrimitives lights(s);
   const SkyPatches cells(s, lights);

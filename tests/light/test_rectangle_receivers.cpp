@@ -45,7 +45,7 @@ struct RandomReceivers {
 
 }  // namespace
 
-TEST_CASE("a rectangle's points for many receivers are those chosen one by one") {
+TEST_CASE("a rectangle's points for many receivers equal those chosen one by one") {
   Random random(5);
   for (const bool is_two_sided : {false, true}) {
     Scene s;

@@ -29,7 +29,7 @@ void add_slanted_and_round(Scene& s) {
 
 }  // namespace
 
-TEST_CASE("many points at a stroke are those chosen one by one") {
+TEST_CASE("many points at once equal those chosen one by one") {
   Scene s;
   test::add_ceiling_light(s, 1, 2, Rgb{1});
   test::add_ceiling_light(s, 0.01f, 1, Rgb{1});
@@ -84,7 +84,7 @@ TEST_CASE("many points at a stroke are those chosen one by one") {
   }
 }
 
-TEST_CASE("points for one receiver are those chosen one by one") {
+TEST_CASE("points for one receiver equal those chosen one by one") {
   Scene s;
   test::add_ceiling_light(s, 1, 2, Rgb{1});
   add_slanted_and_round(s);

@@ -160,7 +160,7 @@ TEST_CASE("samples on a sphere follow their density, inside and outside") {
   }
 }
 
-TEST_CASE("a sample is consistent: point, direction, distance, density, side") {
+TEST_CASE("point, direction, distance, density and side of a sample are consistent") {
   const Pose pose;
   Random random(5);
   for (const NamedScene& s : flat_scenes()) {
@@ -194,7 +194,7 @@ TEST_CASE("a sample is consistent: point, direction, distance, density, side") {
   }
 }
 
-TEST_CASE("one-sided sources are not seen from behind nor from their own plane") {
+TEST_CASE("one-sided sources are not visible from behind or from their own plane") {
   const Pose pose;
   LightSample e;
   for (const NamedScene& s : flat_scenes()) {
@@ -221,7 +221,7 @@ TEST_CASE("one-sided sources are not seen from behind nor from their own plane")
   }
 }
 
-TEST_CASE("the inverse of sampling inverts") {
+TEST_CASE("inverse sampling recovers the random numbers") {
   Random random(9);
   std::vector<NamedScene> scenes;
   for (NamedScene& s : flat_scenes()) scenes.push_back(std::move(s));
@@ -296,7 +296,7 @@ TEST_CASE("the mean of cos / pdf is the closed-form irradiance") {
   }
 }
 
-TEST_CASE("random receivers, on edges and vertices too: finite samples or none") {
+TEST_CASE("random receivers, also on edges and vertices, get finite samples or none") {
   const Pose pose;
   Random random(21);
   std::vector<NamedScene> scenes;

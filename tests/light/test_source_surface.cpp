@@ -25,7 +25,7 @@ std::vector<NamedScene> all_scenes() {
 
 }  // namespace
 
-TEST_CASE("areas") {
+TEST_CASE("areas of source surfaces") {
   const std::vector<double> areas{1, 0.15, 0.47, 1, 0.78, pi * 0.49, 4 * pi * 0.49, 4 * pi * 0.49};
   const auto scenes = all_scenes();
   for (size_t i = 0; i < areas.size(); ++i)
@@ -54,7 +54,7 @@ TEST_CASE("point_at and uv_at are inverse, normals are unit, points lie on the p
   }
 }
 
-TEST_CASE("the square keeps area: as many points fall left of any line as there is area") {
+TEST_CASE("the map from the square preserves area") {
   // χ² test over triangles of the mesh by index, and over halves of disk and sphere by geometry.
   const auto scenes = all_scenes();
   Random random(2);
@@ -94,7 +94,7 @@ TEST_CASE("the square keeps area: as many points fall left of any line as there 
   }
 }
 
-TEST_CASE("cells: areas add up, bounds hold, parallelogram corners are corners") {
+TEST_CASE("source cells: areas add up, bounds hold, corners of parallelograms are exact") {
   Random random(4);
   for (const NamedScene& s : all_scenes()) {
     const SourceSurface surface(s.scene, 0);
@@ -127,7 +127,7 @@ TEST_CASE("cells: areas add up, bounds hold, parallelogram corners are corners")
   }
 }
 
-TEST_CASE("convex polygons as one source") {
+TEST_CASE("convex polygons are one source") {
   const std::vector<Vec3> slanted{{0, 0, 0}, {2, 0, 0}, {3, 1, 1}, {1, 1, 1}};
   const std::vector<Vec3> pentagon{
       {5, 0, 0}, {6, 0, 0}, {6.5f, 1, 0}, {5.5f, 1.7f, 0}, {4.6f, 1, 0}};
@@ -163,7 +163,7 @@ TEST_CASE("convex polygons as one source") {
   CHECK_MESSAGE(result.is_accepted, result.text());
 }
 
-TEST_CASE("pieces: shapes, tables, power, cones") {
+TEST_CASE("source pieces have the expected shapes, tables, power and cones") {
   const auto scenes = flat_scenes();
   const PrimitiveShape shapes[] = {PrimitiveShape::rectangle, PrimitiveShape::rectangle,
                                    PrimitiveShape::triangle,  PrimitiveShape::polygon,
@@ -248,7 +248,7 @@ TEST_CASE("a source lit in one texel only has power") {
   CHECK(p[0].mean_radiance.r == doctest::Approx(2.0 * 2e-4).epsilon(0.5));
 }
 
-TEST_CASE("holes of an alpha mask take their part of a source's power") {
+TEST_CASE("holes of an alpha mask reduce a source's power by their share") {
   // holes where v > 1/2: a quarter of the triangle
   Scene s = triangle_with_image(2, {{0, 0}, {1, 0}});
   s.materials.resize(1);

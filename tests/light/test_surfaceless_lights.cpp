@@ -34,7 +34,7 @@ Scene one_of_each() {
 
 }  // namespace
 
-TEST_CASE("an environment's samples fill the sphere as their density says, and can be inverted") {
+TEST_CASE("an environment's samples follow their density on the sphere and can be inverted") {
   const Scene s = one_of_each();
   const LightPrimitives lights(s);
   const LightPrimitive& p = lights[lights.of_light(3).first];
@@ -76,7 +76,7 @@ TEST_CASE("an environment's samples fill the sphere as their density says, and c
   CHECK_MESSAGE(r.is_accepted, r.text());
 }
 
-TEST_CASE("a point, a spot and a distant light send what their closed forms say") {
+TEST_CASE("a point, a spot and a distant light agree with their closed forms") {
   const Scene s = one_of_each();
   const LightPrimitives lights(s);
   Random random(5);
@@ -143,7 +143,7 @@ TEST_CASE("the power of a light without surface is the flux that it sends") {
         doctest::Approx(4 * pi * r * r * pi * double(luminance(Rgb{1, 2, 3}))));
 }
 
-TEST_CASE("samples of many lights of all kinds are those of each alone") {
+TEST_CASE("samples of many lights of all kinds equal those of each alone") {
   Scene s = random_lights(4, 12);
   for (const Light& e : one_of_each().lights) s.lights.push_back(e);
   const LightPrimitives lights(s);
@@ -201,7 +201,7 @@ TEST_CASE("certificate shapes: flat, spheres that shine outwards, none") {
 
 // Radiant intensity at angle a is (outer - a) / (outer - inner) between the two angles. Its
 // integral over all directions is computed by the midpoint rule.
-TEST_CASE("a spot that fades linearly in the angle, as Mitsuba's") {
+TEST_CASE("a spot that fades linearly in the angle, as in Mitsuba") {
   Scene s;
   add_spot(s, lamp, {0, 0, -1}, float(std::cos(rad_from_deg(15.0))),
            float(std::cos(rad_from_deg(40.0))), Rgb{1});

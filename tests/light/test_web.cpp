@@ -52,7 +52,7 @@ TEST_CASE("types A and B: their angles from the beam, upwards and to the right")
   }
 }
 
-TEST_CASE("lumens of all types are recovered within a thousandth") {
+TEST_CASE("lumens of files of all types are recovered within a thousandth") {
   // I = 1000 cos³ of the angle from the beam gives 2 pi 1000 / 4 lm.
   for (const int type : {1, 2, 3}) {
     std::string text =
@@ -75,7 +75,7 @@ TEST_CASE("lumens of all types are recovered within a thousandth") {
   }
 }
 
-TEST_CASE("what leaves the faces of an opening adds up to the flux") {
+TEST_CASE("light from the faces of an opening adds up to the flux") {
   LightWeb web = read(beam_ies(2, {-90, -60, 0, 60, 90}, {-90, -45, 0, 45, 90}));
   web.faces = {{.12f, 0, 0}, {-.12f, 0, 0}, {0, .2f, 0}, {0, -.2f, 0}, {0, 0, .6f}, {0, 0, -.6f}};
   const WebSamples samples(web);
@@ -103,7 +103,7 @@ std::vector<float> uneven_angles(Random& random, float from, float to, size_t n)
 
 }  // namespace
 
-TEST_CASE("looked up for many points, a web shines as by one search for each") {
+TEST_CASE("a web evaluated for many points at once equals single evaluations") {
   Random random(7);
   for (int trial = 0; trial < 30; ++trial) {
     LightWeb web;
@@ -145,7 +145,7 @@ TEST_CASE("looked up for many points, a web shines as by one search for each") {
   }
 }
 
-TEST_CASE("looked up where a point has no direction, a web is dark") {
+TEST_CASE("a web is dark at points without a direction") {
   const LightWeb web = read(beam_ies(2, {-90, -60, 0, 60, 90}, {-90, -45, 0, 45, 90}));
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::vector<float> x{nan, 1e30f, 0}, y{nan, 1e30f, 0}, z{nan, 1e30f, -1};

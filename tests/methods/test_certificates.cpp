@@ -291,7 +291,7 @@ std::vector<double> direct_light(const Integrator& integrator, const Vec3& eye, 
 
 // A plate around the sphere, 5 mm above its centre. A wide cluster sees past the plane through the
 // centre, and the plate hides some of what it sees there.
-TEST_CASE("a thumbnail of a sphere under a canopy is as by rays") {
+TEST_CASE("a thumbnail of a sphere under a canopy agrees with rays") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
   add_quad(s, grey, {Vec3{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}});

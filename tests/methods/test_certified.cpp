@@ -67,7 +67,7 @@ void check_against_fixed(const PreparedScene& scene, const std::vector<Vec3>& po
 
 }  // namespace
 
-TEST_CASE("certified: where nothing hides a flat source, light is exact, and no ray is cast") {
+TEST_CASE("certified: unoccluded light of a flat source is exact, and no ray is cast") {
   const std::vector<NamedScene> scenes{
       {"square", [](Scene& s) { add_ceiling_light(s, 1, 2, Rgb{5}); }},
       {"two-sided square seen from its back", add_two_sided},
@@ -140,7 +140,7 @@ TEST_CASE("certified: sources without certificates are sampled by rays, without 
   }
 }
 
-TEST_CASE("certified: penumbrae are those of fixed sampling") {
+TEST_CASE("certified: penumbrae agree with fixed sampling") {
   const auto add_table = [](Scene& s) {
     add_block(s, 0, {-0.6f, -0.7f, 0.7f}, {0.6f, 0.3f, 0.75f});
   };
@@ -196,7 +196,7 @@ TEST_CASE("certified: penumbrae are those of fixed sampling") {
     }
 }
 
-TEST_CASE("certified: coats, gloss and mirrors") {
+TEST_CASE("certified: coats, gloss and mirrors agree with fixed sampling") {
   for (const float roughness : {0.0f, 0.1f, 0.4f})
     for (const MaterialKind kind : {MaterialKind::coated_diffuse, MaterialKind::conductor}) {
       Scene s;
@@ -217,7 +217,7 @@ TEST_CASE("certified: coats, gloss and mirrors") {
     }
 }
 
-TEST_CASE("certified: what a scratch was used for before leaves no trace") {
+TEST_CASE("certified: earlier use of a scratch has no effect") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f});
   add_ceiling_light(s, 1, 2, Rgb{5});
@@ -244,7 +244,8 @@ TEST_CASE("certified: what a scratch was used for before leaves no trace") {
   for (size_t i = 0; i < rays.size(); ++i) CHECK(first.direct[i].g == second.direct[i].g);
 }
 
-TEST_CASE("certified: irradiance at points, exact in the open and as by fixed under a table") {
+TEST_CASE(
+    "certified: irradiance at points is exact in the open and agrees with fixed under a table") {
   Scene s;
   add_diffuse(s, Rgb{0.6f});
   add_ceiling_light(s, 1, 2, Rgb{5});
@@ -281,7 +282,7 @@ TEST_CASE("certified: irradiance at points, exact in the open and as by fixed un
   }
 }
 
-TEST_CASE("certified: of many sources, steps of one normal lose none that stands between them") {
+TEST_CASE("certified: with many sources, steps of one normal lose no source between them") {
   Scene s;
   add_diffuse(s, Rgb{0.6f});
   for (int i = 0; i < 30; ++i) {  // upright, in a row, at heights between those of the points
@@ -340,7 +341,7 @@ TEST_CASE("certified: a point on a polygon of many corners belongs to one of its
   CHECK(arc->flat.outline.size() == 11);
 }
 
-TEST_CASE("certified: a leaf takes rays where it may hide a source, and nowhere else") {
+TEST_CASE("certified: a leaf causes rays only where it may hide a source") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f});
   add_ceiling_light(s, 1, 2, Rgb{5});

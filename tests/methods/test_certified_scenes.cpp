@@ -181,7 +181,7 @@ std::vector<HostileScene> hostile_scenes() {
 
 }  // namespace
 
-TEST_CASE("certified: hostile scenes look as by fixed sampling") {
+TEST_CASE("certified: hostile scenes agree with fixed sampling") {
   const std::vector<HostileScene> scenes = hostile_scenes();
   const double significance = sidak(1e-3, int(3 * scenes.size()));
   for (const HostileScene& h : scenes) {
@@ -205,7 +205,7 @@ TEST_CASE("certified: hostile scenes look as by fixed sampling") {
   }
 }
 
-TEST_CASE("flat sources do not light their own backs, whichever side rounding puts hits on") {
+TEST_CASE("flat sources do not light their own backs, on whichever side rounding puts hits") {
   for (const bool is_disk : {false, true}) {
     Scene s;
     add_diffuse(s, Rgb{0.5f});
@@ -254,7 +254,7 @@ TEST_CASE("a sphere that shines outwards does not light its inside, whatever rou
 }
 
 // The bulb's fixture enters it, and balls and disks are no facets, but all lists are complete.
-TEST_CASE("certified: bulbs in their fixtures, balls and disks take no ray") {
+TEST_CASE("certified: bulbs in fixtures, balls and disks need no ray") {
   const std::vector<HostileScene> all = hostile_scenes();
   size_t found = 0;
   for (const HostileScene& n : all) {
@@ -278,7 +278,9 @@ TEST_CASE("certified: bulbs in their fixtures, balls and disks take no ray") {
   CHECK(found >= 8);
 }
 
-TEST_CASE("certified: sources without light, and of more than squares in single precision hold") {
+TEST_CASE(
+    "certified: sources without light, and with radiances too large to square in single "
+    "precision") {
   for (const float radiance : {0.0f, 1e25f}) {
     Scene s;
     add_diffuse(s, Rgb{0.5f});

@@ -151,7 +151,7 @@ TEST_CASE("a matte floor shows reflectance × exact irradiance / pi") {
 
 // An edge 10 cm above the point shows half a millimetre of a strip, and rays that end slightly off
 // the strip would see a different half. The visible part is a narrow rectangle with a closed form.
-TEST_CASE("a strip of light behind an edge that leaves half a millimetre of it") {
+TEST_CASE("a light strip of which an edge leaves half a millimetre visible") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
   make_light(s, add_quad(s, grey, {Vec3{0, -5, 0}, {0.06f, -5, 0}, {0.06f, 5, 0}, {0, 5, 0}}),
@@ -184,7 +184,7 @@ TEST_CASE("a strip of light behind an edge that leaves half a millimetre of it")
   }
 }
 
-TEST_CASE("glossy floors: the weights of both samplings add up to one") {
+TEST_CASE("glossy floors: the weights of light and gloss sampling add up to one") {
   const auto all = sources();
   const std::vector<float> roughnesses{0.1f, 0.4f};
   const double significance = sidak(1e-3, int(all.size() * targets.size() * 3 * 2));
@@ -285,7 +285,7 @@ TEST_CASE("an alpha-masked sheet lets through what its mask does not cover") {
   }
 }
 
-TEST_CASE("fixed sends the shadow rays it is told to send") {
+TEST_CASE("fixed sends the requested number of shadow rays") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f});
   add_ceiling_light(s, 1, 2, Rgb{5});

@@ -103,7 +103,7 @@ Sent told_by(const Integrator& integrator, const Ray& ray, uint32_t samples, int
 
 }  // namespace
 
-TEST_CASE("many lights: no group that a receiver in the ball can see is estimated at nothing") {
+TEST_CASE("many lights: no group that a receiver in the ball sees is estimated as zero") {
   int seen = 0;
   for (uint64_t seed = 0; seed < 3000; ++seed) {
     Random r(seed);
@@ -154,7 +154,9 @@ TEST_CASE("many lights: no group that a receiver in the ball can see is estimate
   CHECK(seen > 10000);
 }
 
-TEST_CASE("many lights: the drawn ones are unbiased, and err by what is allowed and told") {
+TEST_CASE(
+    "many lights: sampling is unbiased, and its error agrees with the allowed and the estimated "
+    "error") {
   const PreparedScene scene(room_of_lights(20));
   const WaveIntegrator fixed = fixed_integrator(scene, 4);
   constexpr uint32_t samples = 16;
@@ -182,7 +184,7 @@ TEST_CASE("many lights: the drawn ones are unbiased, and err by what is allowed 
     }
 }
 
-TEST_CASE("many lights: what a hit costs hardly grows with their number") {
+TEST_CASE("many lights: the cost of a hit hardly grows with their number") {
   const auto cost = [](uint32_t n) {
     const PreparedScene scene(room_of_lights(n));
     const WaveIntegrator drawn = certified_of_pixel(scene, 0.01, 16);
@@ -204,8 +206,7 @@ TEST_CASE("many lights: what a hit costs hardly grows with their number") {
   CHECK(many < 30);
 }
 
-TEST_CASE(
-    "many lights: coats and gloss, sharp and dull, get their light once, and at no greater cost") {
+TEST_CASE("many lights: coats and gloss, sharp or dull, get their light once at no greater cost") {
   for (const float roughness : {0.05f, 0.3f}) {
     Scene s = room_of_lights(12);
     Material& m = s.materials[0];
@@ -301,7 +302,7 @@ Counters counted(const Integrator& integrator, const Ray& ray) {
 
 }  // namespace
 
-TEST_CASE("few lights: certified in the open, drawn behind a net, the same in the mean") {
+TEST_CASE("few lights: certified in the open and sampled behind a net, with the same mean") {
   const PreparedScene scene(room_with_net());
   const Vec3 in_the_open{2, 0, 0}, below_the_net{-1.5f, 0, 0};
   const WaveIntegrator some = drawn_or_certified(scene, 5), none = drawn_or_certified(scene, 0);
@@ -324,7 +325,7 @@ TEST_CASE("few lights: certified in the open, drawn behind a net, the same in th
   }
 }
 
-TEST_CASE("few lights: matte hits draw so many times more points, in the mean the same") {
+TEST_CASE("few lights: matte hits sample several times more points, with the same mean") {
   const Vec3 below_the_net{-1.5f, 0, 0};
   const Ray up = ray_towards(below_the_net + Vec3{0.02f, 0.01f, 0.15f}, below_the_net);
   for (const bool is_glossy : {false, true}) {
@@ -350,7 +351,7 @@ TEST_CASE("few lights: matte hits draw so many times more points, in the mean th
 
 // If lights were chosen by what they send to a cluster as a whole, rays that happen to hit a near
 // strip would bring many times what arrives, as bright dots.
-TEST_CASE("few lights: what is drawn is never far above what nothing hides") {
+TEST_CASE("few lights: sampled light is never far above unoccluded light") {
   Scene s = room_of_lights(4);
   constexpr float low = 0.03f;  // metres over the floor: a strip of 2 m × 2 cm
   make_light(s,
@@ -397,7 +398,7 @@ TEST_CASE("few lights: what is drawn is never far above what nothing hides") {
 
 // If it were left to the lobe's rays alone, a few rays would bring all of the light.
 TEST_CASE(
-    "a lamp without certificates competes with what gloss sends, however few lights there are") {
+    "a lamp without certificates is weighted against gloss rays, however few lights there are") {
   Scene s;
   add_quad(s, add_metal(s, 0.6f), {Vec3{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}});
   add_ball_light(s, {-0.5f, -0.3f, 1.2f}, 0.2f, 16, Rgb{20});

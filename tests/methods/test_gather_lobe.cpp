@@ -73,7 +73,7 @@ Rays gather(const GatherLobe& lobe, size_t n, uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("rays by the lobe: the same mean as by the cosine, and gloss less noisy") {
+TEST_CASE("lobe-distributed rays: same mean as cosine-distributed rays, and less noise in gloss") {
   constexpr size_t rays = 200'000;
   const Vec3 normal = normalize(Vec3{0.2f, -0.4f, 1});
   for (const MaterialKind kind : {MaterialKind::conductor, MaterialKind::metallic_roughness})
@@ -104,7 +104,7 @@ TEST_CASE("rays by the lobe: the same mean as by the cosine, and gloss less nois
       }
 }
 
-TEST_CASE("rays by the lobe: most where gloss is narrow, seen from the side, and matters") {
+TEST_CASE("lobe-distributed rays: most where gloss is narrow, seen from the side, and strong") {
   const Vec3 normal{0, 0, 1};
   const auto share = [&](float alpha, float cosine, float matte, float gloss) {
     const Vec3 wo{std::sqrt(1 - sqr(cosine)), 0, cosine};
@@ -119,7 +119,7 @@ TEST_CASE("rays by the lobe: most where gloss is narrow, seen from the side, and
   CHECK(share(0.25f, 0.1f, 0.5f, 0) == 0);
 }
 
-TEST_CASE("what all lights send, taken together, is about the sum of what each does") {
+TEST_CASE("the estimated light of all lights together is about the sum of the single estimates") {
   Scene s;
   const uint32_t black = add_diffuse(s, Rgb{0});
   for (int i = 0; i < 30; ++i)

@@ -37,7 +37,7 @@ constexpr Vec3 eye{2.2f, 1.0f, 1.6f};
 
 }  // namespace
 
-TEST_CASE("gloss: an open source is hardly noisy over rough metal and coats") {
+TEST_CASE("gloss: an unoccluded source is nearly noise-free over rough metal and coats") {
   for (const MaterialKind kind : {MaterialKind::conductor, MaterialKind::coated_diffuse})
     for (const float roughness : {0.3f, 0.6f}) {
       const PreparedScene scene(glossy_room(kind, roughness, false));
@@ -55,7 +55,7 @@ TEST_CASE("gloss: an open source is hardly noisy over rough metal and coats") {
 }
 
 // A few points of such a source then say what all say.
-TEST_CASE("gloss: a source is gentle that is small beside the lobe, however near or narrow") {
+TEST_CASE("gloss: a source that is small beside the lobe is low-variance, however near or narrow") {
   const PreparedScene scene(glossy_room(MaterialKind::conductor, 0.3f, false));
   SourceIntegrand integrand(scene, 32, NominalSourceDensity(scene, 32));
   CertifiedSource panel;
@@ -85,7 +85,7 @@ TEST_CASE("gloss: a source is gentle that is small beside the lobe, however near
   CHECK(is_low_variance(0.01f, 0.1f));
 }
 
-TEST_CASE("gloss: few points of a panel that is small beside the lobe bring no bias") {
+TEST_CASE("gloss: few points on a panel that is small beside the lobe cause no bias") {
   for (const float panel : {0.3f, 0.7f, 1.0f})
     for (const bool has_leaf : {false, true})
       for (const double error : {0.01, 0.05})
@@ -107,7 +107,7 @@ TEST_CASE("gloss: few points of a panel that is small beside the lobe bring no b
         }
 }
 
-TEST_CASE("gloss: where rays decide, they tell what is hidden, without bias") {
+TEST_CASE("gloss: where rays decide visibility, they are unbiased") {
   for (const MaterialKind kind : {MaterialKind::conductor, MaterialKind::coated_diffuse})
     for (const Vec3& point : {seen, Vec3{0.3f, 0.2f, 0}, Vec3{0.1f, -0.9f, 0}}) {
       const PreparedScene scene(glossy_room(kind, 0.3f, true));

@@ -91,7 +91,7 @@ std::vector<Case> cases() {
 
 }  // namespace
 
-TEST_CASE("lights in each other's place, and in others: every method finds the closed form") {
+TEST_CASE("coincident and separate lights: every method agrees with the closed form") {
   for (const Case& c : cases()) {
     Scene s;
     add_diffuse(s, Rgb{0.5f});
@@ -115,7 +115,7 @@ TEST_CASE("lights in each other's place, and in others: every method finds the c
   }
 }
 
-TEST_CASE("what is joined is the sum, and seen as such; the rest stays in its place") {
+TEST_CASE("joined lights are visible with their sum; other lights stay unchanged") {
   Scene s;
   add_diffuse(s, Rgb{0.5f});
   add_quad(s, 0, {Vec3{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}});

@@ -226,7 +226,7 @@ TEST_CASE("open sources of every shape: a matte floor shows reflectance × irrad
     }
 }
 
-TEST_CASE("a source half hidden by an edge: the bias, measured") {
+TEST_CASE("a source half hidden by an edge has the expected bias") {
   // The edge of a screen cuts the square source as seen from x, at `cut` of its width.
   double worst = 0;
   std::string table;
@@ -267,7 +267,7 @@ TEST_CASE("a source half hidden by an edge: the bias, measured") {
   MESSAGE(table << "largest bias " << worst);
 }
 
-TEST_CASE("allowed variance 0 with a cap: full stratified sampling, unbiased") {
+TEST_CASE("allowed variance 0 with a cap is full stratified sampling without bias") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
   add_ceiling_light(s, 1, 2, Rgb{5});
@@ -291,8 +291,7 @@ TEST_CASE("allowed variance 0 with a cap: full stratified sampling, unbiased") {
   }
 }
 
-TEST_CASE(
-    "ratio estimate: open light is exact whatever the rays' values, half-hidden light is right") {
+TEST_CASE("ratio estimate: unoccluded light is exact, half-hidden light is unbiased") {
   Setting setting = Setting::direct(false);
   setting.options.sampling.uses_ratio = true;
   Scene open;
@@ -323,7 +322,7 @@ TEST_CASE(
   CHECK(p.total.mean() == doctest::Approx(share).epsilon(0.05));  // biased by design
 }
 
-TEST_CASE("direct light only: as the fixed method says, on surfaces of every kind") {
+TEST_CASE("direct light only: agrees with the fixed method on surfaces of every kind") {
   struct Named {
     std::string name;
     Material material;
@@ -374,7 +373,7 @@ TEST_CASE("direct light only: as the fixed method says, on surfaces of every kin
     }
 }
 
-TEST_CASE("white things amid black walls that all shine alike: nothing can be told from them") {
+TEST_CASE("white objects amid equally bright black walls are invisible") {
   struct Named {
     std::string name;
     MaterialKind kind;
@@ -413,7 +412,7 @@ TEST_CASE("white things amid black walls that all shine alike: nothing can be to
   }
 }
 
-TEST_CASE("a furnace: every surface emits what it absorbs, and all that is seen is 1") {
+TEST_CASE("a furnace: every surface emits what it absorbs, and the picture is 1 everywhere") {
   Scene s;
   for (const uint32_t q : add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {-1, -1, 0}, {1, 1, 2}))
     make_light(s, q, Rgb{0.5f});
@@ -472,7 +471,7 @@ Scene bright_wall(int columns) {
 
 }  // namespace
 
-TEST_CASE("a bright patch throws a shadow, and its light counts once") {
+TEST_CASE("a bright patch casts a shadow, and its light counts once") {
   for (const int columns : {1, 16}) {
     Setting setting;
     setting.radiosity.meshing.element_size = 0.2f;
@@ -515,7 +514,7 @@ TEST_CASE("a bright patch throws a shadow, and its light counts once") {
   }
 }
 
-TEST_CASE("mirrors and gloss show what path shows, in a room with indirect light") {
+TEST_CASE("mirrors and gloss agree with path in a room with indirect light") {
   struct Named {
     std::string name;
     MaterialKind kind;
@@ -553,7 +552,7 @@ TEST_CASE("mirrors and gloss show what path shows, in a room with indirect light
   }
 }
 
-TEST_CASE("irradiance at a sensor: direct light exact, all of it near path's") {
+TEST_CASE("irradiance at a sensor: direct light is exact, total light is close to path") {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {-2, -2, 0}, {2, 2, 2.5f});
   add_ceiling_light(s, 1, 2.4f, Rgb{8});
@@ -587,7 +586,7 @@ TEST_CASE("irradiance at a sensor: direct light exact, all of it near path's") {
   CHECK(all == doctest::Approx(at(path, 1u << 14).second).epsilon(0.015));
 }
 
-TEST_CASE("what a batch brings does not depend on what its scratch was used for") {
+TEST_CASE("the result of a batch does not depend on earlier use of its scratch") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
   sources().back().add(s);

@@ -68,7 +68,7 @@ Moments direct_light(Scene scene, const Vec3& x, uint32_t samples, int sets) {
 
 }  // namespace
 
-TEST_CASE("lights together send what they send alone") {
+TEST_CASE("resampled lights together give the sum of single lights") {
   const std::vector<int> lights{0, 1, 2, 3};
   REQUIRE(ResampledDirect::suits(PreparedScene(floor_with(lights, matte()))));
   for (const Material& floor : {matte(), coated()})
@@ -88,7 +88,7 @@ TEST_CASE("lights together send what they send alone") {
 }
 
 // Four equal panels in full view: the remaining noise comes from the choice of points on a panel.
-TEST_CASE("a ray goes to one of several lights, and brings the light of all") {
+TEST_CASE("a ray to one of several lights estimates the light of all") {
   Scene s;
   const uint32_t black = add_diffuse(s, Rgb{0}), grey = add_diffuse(s, Rgb{0.5f});
   for (const float x : {-2.0f, 1.0f})

@@ -45,7 +45,7 @@ WaveIntegrator drawing(const PreparedScene& scene) {
 
 }  // namespace
 
-TEST_CASE("with thrift rays get fewer points, and in the mean the same light") {
+TEST_CASE("with lower sampling effort rays get fewer points and the same mean light") {
   constexpr float typical =
       0.5f;  // luminance of the picture: not all points of the sky are sampled
   const Ray ray = ray_towards({1.2f, 0.3f, 0.9f}, {0.9f, 0.1f, 0});

@@ -67,7 +67,7 @@ TEST_CASE("a mirror shows a lit floor as it is") {
   CHECK(p_of_mean(probe(path(scene, 2), ray, 128, 32).direct, expected, 1e-5) > 1e-4);
 }
 
-TEST_CASE("mirrors that face each other come to an end") {
+TEST_CASE("paths between facing mirrors end") {
   Scene s;
   const uint32_t mirror = add_mirror(s);
   add_box_inside(s, mirror, {-1, -1, -1}, {1, 1, 1});
@@ -79,7 +79,7 @@ TEST_CASE("mirrors that face each other come to an end") {
   CHECK(std::isfinite(probe(path(scene), ray, 16, 4).total.mean()));
 }
 
-TEST_CASE("white closed rooms come to an end, with and without light") {
+TEST_CASE("paths in closed white rooms end, with and without light") {
   for (const bool has_light : {false, true}) {
     Scene s;
     const uint32_t white = add_diffuse(s, Rgb{1});
@@ -152,7 +152,7 @@ TEST_CASE("a glass sphere in a furnace changes nothing") {
   }
 }
 
-TEST_CASE("every bounce adds light, and bounces add up") {
+TEST_CASE("every bounce adds light, and bounces add up to the total") {
   // In the furnace of reflectance rho, depth d gives L0 (1 - rho^(d+1)).
   const float rho = 0.5f;
   const PreparedScene scene(furnace(rho));
@@ -171,7 +171,7 @@ TEST_CASE("every bounce adds light, and bounces add up") {
   }
 }
 
-TEST_CASE("rays that are no rays hit nothing, and spare the others of their batch") {
+TEST_CASE("invalid rays hit nothing and do not affect others in their batch") {
   const PreparedScene scene(furnace(0.5f));
   std::vector<Ray> rays(35, ray_towards({0, 0, 0}, {1, 0.3f, -0.2f}));
   rays[3].direction.x = std::nanf("");
@@ -189,7 +189,7 @@ TEST_CASE("rays that are no rays hit nothing, and spare the others of their batc
   }
 }
 
-TEST_CASE("results do not depend on how rays are cut into batches") {
+TEST_CASE("results do not depend on how rays are divided into batches") {
   Scene s = furnace(0.5f);
   const uint32_t glass = add_glass(s, false), mirror = add_mirror(s);
   add_block(s, glass, {-0.2f, -1, -1}, {0.2f, 1, 1});

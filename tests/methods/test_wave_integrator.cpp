@@ -101,7 +101,7 @@ ViewingRays rays_down(uint32_t n) {
 
 }  // namespace
 
-TEST_CASE("every hit is queued once, waves end with a flush, both parts see the same") {
+TEST_CASE("every hit is queued once, waves end with a flush, and both parts see the same hits") {
   const PreparedScene scene(floor_and_mirror());
   Log direct, indirect;
   const WaveIntegrator integrator(scene,
@@ -126,7 +126,7 @@ TEST_CASE("every hit is queued once, waves end with a flush, both parts see the 
   }
 }
 
-TEST_CASE("sensors are hits without a walk; indirect light gathers for them") {
+TEST_CASE("sensors are hits without a walk; indirect light is gathered for them") {
   const PreparedScene scene(floor_and_mirror());
   Log direct, indirect;
   const WaveIntegrator integrator(scene,
@@ -152,7 +152,7 @@ TEST_CASE("sensors are hits without a walk; indirect light gathers for them") {
   }
 }
 
-TEST_CASE("only emission that competes with the sampling of sources is weighed") {
+TEST_CASE("only emission that competes with light sampling is weighted") {
   Scene s;
   add_quad(s, add_metal(s, 0.2f), {Vec3{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}});
   add_ceiling_light(s, 100, 10, Rgb{1});
@@ -175,7 +175,7 @@ TEST_CASE("only emission that competes with the sampling of sources is weighed")
   CHECK(out.direct[1].g < 2.0f);
 }
 
-TEST_CASE("methods are found by their names, and know what they are made of") {
+TEST_CASE("methods are found by name and report their parts") {
   for (const Method m : {Method::certified, Method::kj92, Method::fixed, Method::path})
     CHECK(Method::find(m.row().name) == m);
   CHECK(Method::find("certified") == Method::certified);
@@ -198,7 +198,7 @@ TEST_CASE("methods are found by their names, and know what they are made of") {
   CHECK(!needs_radiosity(Method::path, Indirect::radiosity));
 }
 
-TEST_CASE("light-tree sampling and fixed rays are the same light") {
+TEST_CASE("light-tree sampling and fixed rays give the same light") {
   Scene s;
   add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}});
   add_ceiling_light(s, 2, 2, Rgb{3});

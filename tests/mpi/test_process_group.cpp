@@ -55,7 +55,7 @@ struct Numbers {
 
 }  // namespace
 
-TEST_CASE("news reaches every process once") {
+TEST_CASE("each message reaches every process once") {
   for (int size = 1; size <= 70; ++size) {
     std::vector<int> count(size_t(size), 0);
     std::vector<int> reached{0};
@@ -69,7 +69,7 @@ TEST_CASE("news reaches every process once") {
   }
 }
 
-TEST_CASE("every process comes to know what all have done") {
+TEST_CASE("every process learns what all have done") {
   for (const int size : {1, 2, 3, 8}) {
     Office office(size);
     std::array<std::atomic<int>, 4> acts{};
@@ -94,7 +94,7 @@ TEST_CASE("every process comes to know what all have done") {
   }
 }
 
-TEST_CASE("who is to do an item is told what it needs; rank 0 alone gets what came of it") {
+TEST_CASE("the process of an item gets its input; only rank 0 gets the result") {
   Office office(3);
   std::atomic<int> by_others = 0;
   run_group(office, nullptr, [&](ProcessGroup& group) {
@@ -125,7 +125,7 @@ TEST_CASE("who is to do an item is told what it needs; rank 0 alone gets what ca
 }
 
 // Rank 1 forwards results to 3 and 5.
-TEST_CASE("a process that dies costs what it had under way, and nobody the results") {
+TEST_CASE("a process that dies loses only its items in progress") {
   Office office(6);
   std::atomic<int> by_dead = 0;
   run_group(office, nullptr, [&](ProcessGroup& group) {
@@ -146,7 +146,7 @@ TEST_CASE("a process that dies costs what it had under way, and nobody the resul
   CHECK(by_dead >= 4);
 }
 
-TEST_CASE("a process that leaves is told of, and its items are others'") {
+TEST_CASE("a process that leaves is reported, and others take over its items") {
   Office office(4);
   std::vector<std::string> warnings;
   run_group(
@@ -168,7 +168,7 @@ TEST_CASE("a process that leaves is told of, and its items are others'") {
   CHECK(warnings[0] == "process 2 does no work: no such file");
 }
 
-TEST_CASE("all stop, whoever is asked to") {
+TEST_CASE("all processes stop, whichever is asked to") {
   for (const int asked_rank : {0, 1, 2}) {
     Office office(3);
     StopFlag asked = false;
@@ -194,7 +194,7 @@ TEST_CASE("all stop, whoever is asked to") {
 }
 
 // The time limit is rank 0's own flag.
-TEST_CASE("work that rank 0 breaks off ends for all, and is not taken for a signal") {
+TEST_CASE("work that rank 0 cancels ends for all and is not taken for a signal") {
   Office office(3);
   StopFlag is_over = false;
   run_group(office, nullptr, [&](ProcessGroup& group) {
@@ -209,7 +209,7 @@ TEST_CASE("work that rank 0 breaks off ends for all, and is not taken for a sign
   });
 }
 
-TEST_CASE("an error where an item is done is that process's alone") {
+TEST_CASE("an error in an item affects only the process that does it") {
   Office office(3);
   run_group(office, nullptr, [&](ProcessGroup& group) {
     Numbers numbers(0, 100);

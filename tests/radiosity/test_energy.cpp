@@ -63,7 +63,7 @@ double indirect_power(const RadiositySolution& s) {
 
 }  // namespace
 
-TEST_CASE("white boxes on a white floor: the unshot power falls with every shot") {
+TEST_CASE("white boxes on a white floor: unshot power decreases with every shot") {
   for (const float gap : {0.0f, 1e-6f, 1e-4f}) {
     const Ready ready(cornell_box(1, gap));
     const StopFlag never = false;
@@ -87,7 +87,7 @@ TEST_CASE("white boxes on a white floor: the unshot power falls with every shot"
   }
 }
 
-TEST_CASE("perfectly white and closed: effort is bounded, and it is said so") {
+TEST_CASE("a perfectly white closed room: effort is bounded, with a warning") {
   Scene scene;
   const auto quads = add_box_inside(scene, add_diffuse(scene, Rgb{1}), {0, 0, 0}, {4, 3, 2.5f});
   make_light(scene, quads[1], Rgb{3});
@@ -106,7 +106,7 @@ TEST_CASE("perfectly white and closed: effort is bounded, and it is said so") {
   CHECK(ready.solve(o).end == RadiosityEnd::out_of_rays);
 }
 
-TEST_CASE("where most light escapes the rest is still reflected as often as it should be") {
+TEST_CASE("where most light escapes, the rest is still reflected correctly") {
   Scene scene;  // two sheets that share an edge; the light shines up and sideways
   const uint32_t grey = add_diffuse(scene, Rgb{0.7f});
   add_quad(scene, grey, {Vec3{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}});
@@ -127,7 +127,7 @@ TEST_CASE("where most light escapes the rest is still reflected as often as it s
   CHECK(indirect_power(s) > 0.95 * indirect_power(fine));
 }
 
-TEST_CASE("light that gets lost is told") {
+TEST_CASE("lost light causes a warning") {
   // A light so close to its shade that no sample point of the coarse elements sees it.
   Scene scene;
   const uint32_t grey = add_diffuse(scene, Rgb{0.5f});
@@ -142,7 +142,7 @@ TEST_CASE("light that gets lost is told") {
   const RadiositySolution s = ready.solve(o);
   CHECK(s.balance.unaccounted > 0.5 * s.balance.emitted);
   REQUIRE(radiosity_warnings(s).size() == 1);
-  CHECK(radiosity_warnings(s)[0].find("% of the emitted power came to no sample point") !=
+  CHECK(radiosity_warnings(s)[0].find("% of the emitted power reached no sample point") !=
         std::string::npos);
 }
 
@@ -157,7 +157,7 @@ TEST_CASE("a scene without light has a solution at once") {
   CHECK(radiosity_warnings(s).empty());
 }
 
-TEST_CASE("closing a shot") {
+TEST_CASE("the energy balance of a shot is closed") {
   const OpenShare closed{0, 0};
   const std::vector<float> even(100, 1.0f);
   SUBCASE("a small error is corrected everywhere alike") {
@@ -165,10 +165,10 @@ TEST_CASE("closing a shot") {
     CHECK(c.of(1.0f) == doctest::Approx(0.97f));
     CHECK(close_shot(even, 100, 104, closed).arrived == doctest::Approx(104));
   }
-  SUBCASE("what is missing beyond it stays missing") {
+  SUBCASE("a larger error stays missing") {
     CHECK(close_shot(even, 100, 200, closed).arrived == doctest::Approx(130));
   }
-  SUBCASE("an excess is taken from those that got most") {
+  SUBCASE("an excess is taken from the receivers that got most") {
     std::vector<float> powers = even;
     powers[7] = 100;
     const Closure c = close_shot(powers, 199, 110, closed);
@@ -176,7 +176,7 @@ TEST_CASE("closing a shot") {
     CHECK(c.of(1.0f) == doctest::Approx(1).epsilon(1e-4));
     CHECK(c.of(100.0f) == doctest::Approx(11).epsilon(1e-3));
   }
-  SUBCASE("what leaves is left out, as far as it is known") {
+  SUBCASE("light known to leave the scene is excluded") {
     const OpenShare half{0.5, 0.1};
     CHECK(close_shot(even, 100, 200, half).scale == doctest::Approx(1));
     CHECK(close_shot(even, 100, 150, half).arrived == doctest::Approx(90));
@@ -186,7 +186,7 @@ TEST_CASE("closing a shot") {
     CHECK(open_share(0.2, 1000, false).share == 0.2);
     CHECK(open_share(0.2, 1000, true).share == 0);
   }
-  SUBCASE("never more than was sent, whatever the numbers") {
+  SUBCASE("receivers never get more than was sent") {
     std::vector<float> powers = {1e30f, 1e-30f, 3, 0};
     double sum = 0;
     for (const float p : powers) sum += double(p);

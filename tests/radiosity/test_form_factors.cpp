@@ -170,7 +170,7 @@ TEST_CASE("reciprocity") {
   CHECK(compared > 10);
 }
 
-TEST_CASE("spheres and disks shoot what they should") {
+TEST_CASE("spheres and disks shoot their full power") {
   // A closed sphere lit from within: from any inner point, its inside fills the whole hemisphere.
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
@@ -201,7 +201,7 @@ TEST_CASE("spheres and disks shoot what they should") {
   CHECK(worst < 0.1);
 }
 
-TEST_CASE("curved patches of many pieces shoot by the disc approximation") {
+TEST_CASE("curved patches of many pieces use the disc approximation") {
   // A fine half cylinder, joined into few sheets and closed by a flat chord.
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});

@@ -61,7 +61,7 @@ Scene hair(int count, int segments) {
 
 }  // namespace
 
-TEST_CASE("surfaces too far away for numbers are left out, and it is said so") {
+TEST_CASE("surfaces too far away to represent are left out with a warning") {
   const double wanted = mean_irradiance_in_room(Ready(lit_room(0.5f)).solve(quick()));
   Scene s = lit_room(0.5f);
   SUBCASE("a sphere of 1e30 m") {
@@ -94,7 +94,7 @@ TEST_CASE("very large surfaces stay within the bounds") {
   CHECK(solution.mesh.memory_bytes() < size_t(40) << 20);
 }
 
-TEST_CASE("hair: many long thin triangles stay within the bounds, and it is said what they cost") {
+TEST_CASE("hair: many long thin triangles stay within the bounds, with a warning about accuracy") {
   const Ready ready(hair(4000, 14));
   RadiosityOptions o = quick();
   o.meshing.max_elements = 3000;
@@ -105,6 +105,6 @@ TEST_CASE("hair: many long thin triangles stay within the bounds, and it is said
   CHECK(solution.mesh.memory_bytes() < size_t(60) << 20);
   bool is_told = false;
   for (const std::string& w : radiosity_warnings(solution))
-    is_told = is_told || w.find("times as long as wanted") != std::string::npos;
+    is_told = is_told || w.find("times as long as requested") != std::string::npos;
   CHECK(is_told);
 }

@@ -97,7 +97,7 @@ TEST_CASE("two triangles make one polygon, and cuts leave no gaps") {
   }
 }
 
-TEST_CASE("lookup finds the fragment that holds the point") {
+TEST_CASE("lookup finds the fragment that contains the point") {
   Scene s;
   const uint32_t m = add_diffuse(s, Rgb{0.5f});
   add_quad(s, m, {Vec3{0, 0, 0}, {2, 0, 0}, {2.5f, 1.7f, 0.3f}, {0, 1.7f, 0.3f}});
@@ -151,7 +151,7 @@ TEST_CASE("hidden sides neither shoot nor receive") {
   CHECK(area == doctest::Approx(room + block + lamp).epsilon(1e-3));
 }
 
-TEST_CASE("interpolation gives back a linear field and reaches every place") {
+TEST_CASE("interpolation reproduces a linear field and covers every place") {
   Scene s;
   const uint32_t m = add_diffuse(s, Rgb{0.5f});
   add_quad(s, m, {Vec3{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}});
@@ -207,7 +207,7 @@ TEST_CASE("300 000 triangles stay within the bounds") {
                                 << " sheets, " << double(mesh.memory_bytes()) * 1e-6 << " MB");
 }
 
-TEST_CASE("degenerate meshes come to an end") {
+TEST_CASE("meshing of degenerate meshes terminates") {
   constexpr float inf = std::numeric_limits<float>::infinity(),
                   nan = std::numeric_limits<float>::quiet_NaN();
   Scene s = lit_room(0.5f);
@@ -264,7 +264,7 @@ TEST_CASE("scenes without light or without surfaces") {
   CHECK(b.mesh.points.empty());
 }
 
-TEST_CASE("textures give elements their reflectance, masks their area") {
+TEST_CASE("textures set the reflectance of elements, masks their area") {
   Scene s;
   Material m;
   m.base_color.value = Rgb{1};
@@ -298,7 +298,7 @@ TEST_CASE("textures give elements their reflectance, masks their area") {
 }
 
 // A solution file may request both.
-TEST_CASE("sizes that no bound allows end at the bound, not at a mesh without end") {
+TEST_CASE("impossible element sizes end at the bound instead of an endless mesh") {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {0, 0, 0}, {4, 3, 2.5f});
   MeshingOptions o = sizes(1e-30f, 1e-30f);

@@ -69,7 +69,7 @@ struct Rows {
 
 }  // namespace
 
-TEST_CASE("rows give what many rays give") {
+TEST_CASE("form factors of rows agree with many rays") {
   Rows r(1u << 30);
   RayBudget many;
   many.max_rays = 512;
@@ -110,7 +110,7 @@ TEST_CASE("rows give what many rays give") {
             doctest::Approx(sums[b.first_point + i]).epsilon(0.02));
 }
 
-TEST_CASE("later shots are looked up; what is not kept is found again, alike") {
+TEST_CASE("later shots reuse stored rows; rows that are not stored are recomputed identically") {
   Rows kept(1u << 30), not_kept(0);
   const uint32_t patch = uint32_t(kept.mesh.patches.size() / 2);
   const std::vector<float> first = kept.shoot(patch), found = not_kept.shoot(patch);
@@ -127,7 +127,7 @@ TEST_CASE("later shots are looked up; what is not kept is found again, alike") {
   CHECK(not_kept.rows.rows_not_kept() == 2);
 }
 
-TEST_CASE("a patch that is bright at one end sends as much as one that is even") {
+TEST_CASE("a patch that is bright at one end sends as much as a uniform one") {
   Rows r(1u << 30);
   uint32_t compared = 0;
   for (uint32_t patch = 0; patch < r.mesh.patches.size(); patch += 3) {
@@ -143,7 +143,7 @@ TEST_CASE("a patch that is bright at one end sends as much as one that is even")
   CHECK(compared > 3);
 }
 
-TEST_CASE("cells send what their patch does") {
+TEST_CASE("cells of a patch send the same light as the patch") {
   Rows r(0);
   for (uint32_t patch = 0; patch < r.mesh.patches.size(); ++patch) {
     const Shooter shooter = patch_shooter(r.mesh, patch, Rgb{1});

@@ -51,7 +51,7 @@ Fate trace_photons(const Ready& ready, const std::vector<float>& rho,
 
 }  // namespace
 
-TEST_CASE("light goes where photons go: an open room with a block and a pane of glass") {
+TEST_CASE("light agrees with photon tracing in an open room with a block and a pane of glass") {
   Scene s = lit_room(0.7f);
   std::vector<float> rho(6, 0.7f), specular(6, 0.0f);
   rho.push_back(0);  // the source

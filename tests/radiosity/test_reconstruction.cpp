@@ -131,7 +131,7 @@ std::string told(const BothErrors& e) {
 
 // A light close below the ceiling shines up. Only the ceiling reflects, so the light on the wall is
 // known: many rays with the exact light at their ends.
-TEST_CASE("no ring of too bright wall about a light near the ceiling") {
+TEST_CASE("a light close below the ceiling causes no bright ring on the wall") {
   Scene s;
   const auto walls = add_box_inside(s, add_diffuse(s, Rgb{0}), {0, 0, 0}, {4, 5, 3});
   uint32_t ceiling = 0;
@@ -231,7 +231,7 @@ TEST_CASE("risers of stairs") {
   }
 }
 
-TEST_CASE("smooth shapes have neither facets nor stripes") {
+TEST_CASE("smooth shapes show neither facets nor stripes") {
   for (const uint32_t sectors : {24u, 96u}) {
     Scene s;
     const uint32_t grey = add_diffuse(s, Rgb{0.5f});

@@ -82,7 +82,7 @@ TEST_CASE("another scene or other settings are refused") {
   CHECK(refusal(ready, bytes, coarse()).empty());
 }
 
-TEST_CASE("a solution tells its own settings") {
+TEST_CASE("a solution reports its settings") {
   const Ready ready(lit_room(0.5f));
   RadiosityOptions o = coarse();
   o.seed = 0x123456789abcull;
@@ -116,7 +116,7 @@ TEST_CASE("damaged files are refused") {
   }
 }
 
-TEST_CASE("light that is no finite number is refused, wherever it stands") {
+TEST_CASE("light that is not finite is refused, wherever it is") {
   const Ready ready(lit_room(0.5f));
   const RadiositySolution good = ready.solve(coarse());
   REQUIRE(refusal(ready, save_solution(ready.scene, good), coarse()).empty());
@@ -144,7 +144,7 @@ TEST_CASE("light that is no finite number is refused, wherever it stands") {
     }
 }
 
-TEST_CASE("options that are no finite number are refused by who takes the file's own") {
+TEST_CASE("options that are not finite are refused when the file's own settings are used") {
   const Ready ready(lit_room(0.5f));
   const RadiositySolution good = ready.solve(coarse());
   using Spoil = void (*)(RadiosityOptions&, float);
@@ -168,7 +168,7 @@ TEST_CASE("options that are no finite number are refused by who takes the file's
     }
 }
 
-TEST_CASE("a number of stored contributions that is not the options' is refused") {
+TEST_CASE("a different number of stored contributions is refused") {
   const Ready ready(lit_room(0.5f));
   RadiositySolution s = ready.solve(coarse());
   const size_t points = s.general.size();

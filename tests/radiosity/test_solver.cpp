@@ -131,7 +131,7 @@ TEST_CASE("integrating sphere") {
   check_balance(solution, 0.02);
 }
 
-TEST_CASE("stored contributions and the general value make the whole") {
+TEST_CASE("stored contributions and the general value add up to the total") {
   const Ready ready(lit_room(0.5f));
   RadiosityOptions o;
   o.meshing = sizes(0.4f, 1.2f);
@@ -197,7 +197,7 @@ TEST_CASE("a stop ends after the current shot") {
   CHECK(s.ambient.g > 0);
 }
 
-TEST_CASE("what is not reflected diffusely is counted") {
+TEST_CASE("light that is not reflected diffusely is counted") {
   Scene s = lit_room(0.5f);
   Material mirror;
   mirror.kind = MaterialKind::conductor;
@@ -243,7 +243,7 @@ TEST_CASE("every kind of emitter shoots its power") {
   }
 }
 
-TEST_CASE("surfaces of several meshes that coincide: copies count once, others end") {
+TEST_CASE("coincident surfaces of several meshes: copies count once, and solving ends for others") {
   for (const float gap : {0.0f, 1e-6f, 1e-4f}) {
     Scene s = lit_room(0.9f);
     const size_t alone_meshes = s.meshes.size();

@@ -58,7 +58,7 @@ bool is_same(const Rgb& a, const Rgb& b) {
 
 }  // namespace
 
-TEST_CASE("direct light is kept apart") {
+TEST_CASE("direct light is stored separately") {
   const Ready ready(three_lamps());
   RadiosityOptions only_lights = coarse(4);
   only_lights.unshot_fraction = 1;
@@ -84,7 +84,7 @@ TEST_CASE("direct light is kept apart") {
   }
 }
 
-TEST_CASE("what an emitter gave can be computed again, bit for bit") {
+TEST_CASE("the light of an emitter can be recomputed bit for bit") {
   const Ready ready(three_lamps());
   const RadiositySolution s = ready.solve(coarse(64));
   const std::vector<uint32_t> points = all_points(s);
@@ -112,7 +112,7 @@ TEST_CASE("what an emitter gave can be computed again, bit for bit") {
   }
 }
 
-TEST_CASE("what a patch gave can be computed again, but for noise") {
+TEST_CASE("the light of a patch can be recomputed up to noise") {
   const Ready ready(three_lamps());
   RadiosityOptions o = coarse(64);
   o.tolerance = 5e-4f;

@@ -80,7 +80,7 @@ class TwoLooks final : public Integrator {
 
 }  // namespace
 
-TEST_CASE("audit: what is found at the first look is looked at once more, which decides") {
+TEST_CASE("audit: a suspicion from the first test is decided by a second test") {
   constexpr size_t points = 32;
   constexpr int samples = 64;
   constexpr uint64_t first = points * samples * 4, both = first + points * samples * 16;
@@ -102,7 +102,7 @@ TEST_CASE("audit: what is found at the first look is looked at once more, which 
   CHECK(!confirmed.needed_second_look);
 }
 
-TEST_CASE("audit: lists that agree are found fault with once in a hundred times") {
+TEST_CASE("audit: unbiased lists are rejected once in a hundred cases") {
   Random random(4);
   for (const int points : {1, 5, 32}) {
     int alarms = 0;
@@ -116,7 +116,7 @@ TEST_CASE("audit: lists that agree are found fault with once in a hundred times"
   }
 }
 
-TEST_CASE("audit: a bias is told about as large as it is") {
+TEST_CASE("audit: the reported bias is close to the actual bias") {
   Random random(5);
   for (const double bias : {0.05, 0.1, 0.3}) {
     double squares = 0;
@@ -129,7 +129,7 @@ TEST_CASE("audit: a bias is told about as large as it is") {
   }
 }
 
-TEST_CASE("audit: dark points, and others without an error, have no say") {
+TEST_CASE("audit: dark points and points without an error do not count") {
   std::vector<Measurement> points(2), others(2);
   others[0].illuminance_lx = 5;
   others[0].standard_error = 1;
@@ -141,7 +141,7 @@ TEST_CASE("audit: dark points, and others without an error, have no say") {
   CHECK(relative_bias(points, others) == doctest::Approx(0.5).epsilon(0.01));
 }
 
-TEST_CASE("audit: behind blinds in the sun points get what paths find, and intervals hold it") {
+TEST_CASE("audit: points behind sunlit blinds agree with paths, within their intervals") {
   const PreparedScene scene(blinds_in_the_sun());
   const std::vector<MeasuringPoint> points = points_above(24);
   MeasureOptions o = by_cells(2);
@@ -171,7 +171,7 @@ TEST_CASE("audit: behind blinds in the sun points get what paths find, and inter
   CHECK(told < 0.05);
 }
 
-TEST_CASE("audit: the same for any number of threads, and a stop within it is told") {
+TEST_CASE("audit: the same for any number of threads, and a stop during it is reported") {
   const PreparedScene scene(blinds_in_the_sun());
   const std::vector<MeasuringPoint> points = points_above(5);
   MeasureOptions o = by_cells(1);

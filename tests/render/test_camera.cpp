@@ -141,7 +141,7 @@ TEST_CASE("a thin lens keeps the plane of focus sharp") {
   }
 }
 
-TEST_CASE("image size: asked for, else the file's, else by aspect") {
+TEST_CASE("image size: as requested, else the file's, else by aspect") {
   Camera c;
   c.width = 320;
   c.height = 200;

@@ -51,14 +51,14 @@ void check_same_light(const PreparedScene& scene, const Camera& camera) {
 
 }  // namespace
 
-TEST_CASE("caustics: as much light below a ball of glass as by paths") {
+TEST_CASE("caustics: light below a glass ball agrees with paths") {
   Scene s = dark_room();
   s.spheres.push_back({{0, 0, 0.6f}, 0.35f, false, add_material(s, clear_glass()), no_light});
   const PreparedScene scene(std::move(s));
   check_same_light(scene, look_at({0.9f, -0.9f, 0.5f}, {0, 0, 0}, {0, 0, 1}, 40));
 }
 
-TEST_CASE("caustics: as much light before a bent mirror as by paths") {
+TEST_CASE("caustics: light in front of a curved mirror agrees with paths") {
   Scene s = dark_room();
   const uint32_t material = add_material(s, mirror());
   // A hollow half cylinder next to the place below the light.

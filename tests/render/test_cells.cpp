@@ -58,7 +58,7 @@ RenderOptions picture_by_cells() {
 
 }  // namespace
 
-TEST_CASE("cells: a closed cube lit by its ceiling keeps all light, whatever it reflects") {
+TEST_CASE("cells: a closed cube lit by its ceiling keeps all light, for any reflectance") {
   for (const float rho : {0.05f, 0.5f, 0.8f, 0.95f}) {
     Scene s;
     const auto walls = add_box_inside(s, add_diffuse(s, Rgb{rho}), {-1, -1, -1}, {1, 1, 1});
@@ -72,7 +72,7 @@ TEST_CASE("cells: a closed cube lit by its ceiling keeps all light, whatever it 
   }
 }
 
-TEST_CASE("cells: in a furnace pixels are as bright as all others, within what is asked") {
+TEST_CASE("cells: in a furnace all pixels are equally bright within the asked error") {
   const PreparedScene scene(uneven_furnace());
   RenderOptions o = picture_by_cells();
   o.width = 32;
@@ -92,7 +92,7 @@ TEST_CASE("cells: in a furnace pixels are as bright as all others, within what i
   CHECK(off < 0.12 * n);
 }
 
-TEST_CASE("cells: of two rooms on one floor the dark one stays dark") {
+TEST_CASE("cells: with two rooms on one floor the dark one stays dark") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.7f});
   add_box_inside(s, grey, {-4, -2, 0}, {4.1f, 2, 3});
@@ -130,7 +130,7 @@ TEST_CASE("cells: byte-identical for any number of threads, and crops are parts 
 }
 
 // Large enough that some pixels have no records of their own.
-TEST_CASE("cells: crops of a picture whose pixels lie close together are parts of it") {
+TEST_CASE("cells: crops of a picture with closely spaced pixels are parts of it") {
   const PreparedScene scene(mixed_room());
   RenderOptions o = picture_by_cells();
   o.width = 240;
@@ -169,7 +169,7 @@ Scene room_behind_glass() {
   return s;
 }
 
-TEST_CASE("cells: light through a pane and by way of a mirror arrives, and intervals hold it") {
+TEST_CASE("cells: light through a pane and via a mirror arrives, within the intervals") {
   const PreparedScene scene(room_behind_glass());
   std::vector<MeasuringPoint> points;
   Random random(3);
@@ -196,7 +196,7 @@ TEST_CASE("cells: light through a pane and by way of a mirror arrives, and inter
   CHECK(inside >= 34);
 }
 
-TEST_CASE("cells: the error that is told is about the one that is made") {
+TEST_CASE("cells: the estimated error is close to the actual error") {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.7f, 0.6f, 0.5f}), {-2, -2, 0}, {2, 2, 2.5f});
   const uint32_t dark = add_diffuse(s, Rgb{0.3f});
@@ -229,7 +229,7 @@ TEST_CASE("cells: the error that is told is about the one that is made") {
   CHECK(std::sqrt(told) < 2 * std::sqrt(made));
 }
 
-TEST_CASE("cells: a room with mirror, glass, gloss is as bright as by paths") {
+TEST_CASE("cells: a room with mirror, glass and gloss agrees with paths") {
   const PreparedScene scene(mixed_room());
   RenderOptions o = picture_by_cells();
   o.width = 24;
@@ -267,7 +267,7 @@ Scene tiled_room() {
   return s;
 }
 
-TEST_CASE("cells: light on a floor of tiles is smooth, and the tiles stay sharp") {
+TEST_CASE("cells: light on a tiled floor is smooth, and the tiles stay sharp") {
   const PreparedScene scene(tiled_room());
   const Camera camera = look_at({0, -0.9f, 1.6f}, {0, 0.3f, 0}, {0, 0, 1}, 50);
   RenderOptions o = picture_by_cells();
@@ -303,7 +303,7 @@ TEST_CASE("cells: light on a floor of tiles is smooth, and the tiles stay sharp"
 }
 
 // Leaves in the open: rays of a cell hit different leaves, so cells are hardly shared.
-TEST_CASE("cells: where few rays share cells, few go out from each") {
+TEST_CASE("cells: cells that few rays share send few rays") {
   Scene s;
   const uint32_t m = add_diffuse(s, Rgb{0.5f});
   Random random(11);

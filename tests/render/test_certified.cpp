@@ -85,7 +85,7 @@ TEST_CASE("certified: byte-identical for any number of threads") {
   }
 }
 
-TEST_CASE("certified --indirect none: the direct light of fixed; every pixel") {
+TEST_CASE("certified --indirect none: every pixel agrees with the direct light of fixed") {
   const PreparedScene scene(mixed_room());
   RenderOptions o = certified_options();
   o.indirect = Indirect::none;
@@ -105,7 +105,7 @@ TEST_CASE("certified --indirect none: the direct light of fixed; every pixel") {
   CHECK(mine.mean.mean() == doctest::Approx(mean_green(fixed)).epsilon(0.005));
 }
 
-TEST_CASE("certified: with indirect light, the mean of path's picture") {
+TEST_CASE("certified: with indirect light, the mean agrees with path") {
   const PreparedScene scene(mixed_room());
   RenderOptions o = certified_options();
   o.kj92.radiosity.unshot_fraction = 0.02f;
@@ -118,7 +118,7 @@ TEST_CASE("certified: with indirect light, the mean of path's picture") {
                     .epsilon(0.03));
 }
 
-TEST_CASE("certified: refinement goes to edges, and gains by it") {
+TEST_CASE("certified: refinement adds rays at edges and reduces the error") {
   const std::string root(TROFFER_SOURCE_DIR);
   const PreparedScene scene(import_scene(root + "/scenes/kj92room/kj92room_direct.pbrt"));
   RenderOptions o;
@@ -154,7 +154,7 @@ TEST_CASE("certified: refinement goes to edges, and gains by it") {
   CHECK(error(refined) < error(even));
 }
 
-TEST_CASE("certified: kj92room as its reference shows it") {
+TEST_CASE("certified: kj92room agrees with its reference") {
   const std::string root(TROFFER_SOURCE_DIR);
   const Image expected = read_image(root + "/scenes/references/kj92room_direct.exr");
   const PreparedScene scene(import_scene(root + "/scenes/kj92room/kj92room_direct.pbrt"));
@@ -181,7 +181,7 @@ TEST_CASE("certified: kj92room as its reference shows it") {
   CHECK(render_now(scene, scene.scene.cameras.at(0), o).statistics.counters.shadow_rays == 0);
 }
 
-TEST_CASE("certified: measures what path measures") {
+TEST_CASE("certified: measured values agree with path") {
   const PreparedScene scene(mixed_room());
   MeasureOptions o;
   o.method = Method::certified;
@@ -208,8 +208,7 @@ TEST_CASE("certified: measures what path measures") {
   }
 }
 
-TEST_CASE(
-    "certified: direct light at the desk and on the floor is what path measures, but closer") {
+TEST_CASE("certified: direct light on desk and floor agrees with path, with a smaller error") {
   const std::string root(TROFFER_SOURCE_DIR);
   const PreparedScene scene(import_scene(root + "/scenes/kj92room/kj92room_direct.pbrt"));
   std::vector<MeasuringPoint> points;
@@ -243,7 +242,7 @@ TEST_CASE(
   CHECK(squares < 2);
 }
 
-TEST_CASE("certified: the standard error of what is measured is the spread over seeds") {
+TEST_CASE("certified: the standard error of measured values equals their spread over seeds") {
   const PreparedScene scene(mixed_room());
   MeasureOptions o;
   o.method = Method::certified;
@@ -276,7 +275,7 @@ TEST_CASE("certified: the standard error of what is measured is the spread over 
   }
 }
 
-TEST_CASE("certified: the error that is told is the error that is made, and up to twice that") {
+TEST_CASE("certified: the estimated error is between the actual error and twice that") {
   const std::string root(TROFFER_SOURCE_DIR);
   for (const char* name :
        {"/scenes/kj92room/kj92room_direct.pbrt", "/scenes/modern-hall/modern-hall-diffuse.pbrt"}) {

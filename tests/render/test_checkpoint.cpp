@@ -104,7 +104,7 @@ void check_resumed(const RenderOptions& o) {
 
 }  // namespace
 
-TEST_CASE("a picture that is broken off five times and gone on with has the same bits") {
+TEST_CASE("a picture that is interrupted and resumed five times has the same bits") {
   for (const int max_spp : {6, 19}) {
     check_resumed(options_for(Method::path, max_spp));
     check_resumed(options_for(Method::fixed, max_spp));
@@ -112,7 +112,8 @@ TEST_CASE("a picture that is broken off five times and gone on with has the same
   }
 }
 
-TEST_CASE("… by the default, with cells, without reflected light, and as a share") {
+TEST_CASE(
+    "resuming by default, with cells, without reflected light, and as a part gives the same bits") {
   RenderOptions o = options_for(Method::certified, 0);
   check_resumed(o);
   o.part = 2;
@@ -122,8 +123,7 @@ TEST_CASE("… by the default, with cells, without reflected light, and as a sha
   check_resumed(o);
 }
 
-TEST_CASE(
-    "broken off before the first tile: a checkpoint all the same, or the one that was there") {
+TEST_CASE("an interruption before the first tile leaves a new checkpoint or the existing one") {
   const Room room;
   const RenderOptions o = options_for(Method::certified, 0);
   const File file;
@@ -143,7 +143,7 @@ TEST_CASE(
   CHECK(is_identical(resumed.layers, render_now(room.scene, room.camera, o).layers));
 }
 
-TEST_CASE("a checkpoint of another picture is refused in a line that says why") {
+TEST_CASE("a checkpoint of another picture is refused with the reason in one line") {
   const Room room;
   const RenderOptions o = options_for(Method::fixed, 6);
   const File file;
@@ -180,7 +180,7 @@ TEST_CASE("a checkpoint of another picture is refused in a line that says why") 
   CHECK(refusal(room.key(o), {}).find("cannot open") != std::string::npos);
 }
 
-TEST_CASE("damaged checkpoints are refused, whatever bit it is, and wherever they are cut") {
+TEST_CASE("damaged checkpoints are refused, for any flipped bit and any truncation") {
   const Room room;
   RenderOptions o = options_for(Method::kj92, 19);
   o.width = 20;
@@ -214,7 +214,7 @@ TEST_CASE("damaged checkpoints are refused, whatever bit it is, and wherever the
   }
 }
 
-TEST_CASE("checkpoints that lie, with sound sums: refused, or a picture all the same") {
+TEST_CASE("false checkpoints with valid checksums are refused or give a picture") {
   const Room room;
   for (const Method method : {Method::kj92, Method::certified}) {
     RenderOptions o = options_for(method, method == Method::kj92 ? 14 : 24);
@@ -261,7 +261,7 @@ TEST_CASE("checkpoints that lie, with sound sums: refused, or a picture all the 
         CHECK(r.layers[0].image.width == 19);
       } catch (const InputError& e) {
         ++refused;
-        CHECK(e.reason() == "checkpoint has values that none can have");
+        CHECK(e.reason() == "checkpoint has invalid values");
       }
       std::remove(path.c_str());
     }
@@ -270,7 +270,7 @@ TEST_CASE("checkpoints that lie, with sound sums: refused, or a picture all the 
   }
 }
 
-TEST_CASE("a checkpoint that cannot be written is told once, and the picture goes on") {
+TEST_CASE("a checkpoint that cannot be written causes one warning, and rendering continues") {
   const Room room;
   RenderOptions o = options_for(Method::fixed, 6);
   std::vector<std::string> told;

@@ -34,7 +34,7 @@ Scene thicket() {
 
 }  // namespace
 
-TEST_CASE("coarse pictures draw points of many lamps behind a thicket") {
+TEST_CASE("coarse pictures sample points of many lamps behind a thicket") {
   const PreparedScene scene(thicket());
   const Camera camera = look_at({0.3f, 0.3f, 1}, {2.5f, 2.5f, 0}, {0, 0, 1}, 70);
   RenderOptions o;

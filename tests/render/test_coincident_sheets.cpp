@@ -43,7 +43,7 @@ Camera looking(bool is_from_above) {
 
 }  // namespace
 
-TEST_CASE("of two one-sided sheets in one place the one that faces the viewer is seen") {
+TEST_CASE("of two coincident one-sided sheets the one that faces the viewer is visible") {
   for (const Method method : {Method::certified, Method::path, Method::fixed, Method::kj92})
     for (const bool is_red_first : {true, false})
       for (const float shift : {0.0f, 37.0f})

@@ -48,7 +48,7 @@ double off_in_blocks(const Image& image, const Image& truth) {
 
 }  // namespace
 
-TEST_CASE("a cove lights all parts of a room as much as by paths") {
+TEST_CASE("light from a cove agrees with paths in all parts of a room") {
   const PreparedScene scene(cove_room());
   const Camera camera = look_at({0.5f, 0.5f, 1.5f}, {3.2f, 4.2f, 0.9f}, {0, 0, 1}, 75);
   RenderOptions path;
@@ -100,7 +100,7 @@ Scene hall_with_coves() {
 
 // The rim is narrower than a pixel, and its light comes from the shelf below, a part of which the
 // lamp hides.
-TEST_CASE("the bright rim over a cove's lip gets its light but for three percent") {
+TEST_CASE("the bright strip above a cove's lip gets its light within three percent") {
   const PreparedScene scene(hall_with_coves());
   const Camera camera = look_at({1, 1, 1.6f}, {7, 4, 1.8f}, {0, 0, 1}, 75);
   const auto rim = [&](RenderOptions o) {

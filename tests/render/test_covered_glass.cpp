@@ -68,7 +68,7 @@ void check_irradiance(const Scene& given, double expected) {
 
 }  // namespace
 
-TEST_CASE("glass under coats and films is not seen in a furnace") {
+TEST_CASE("glass under coats and films is invisible in a furnace") {
   Scene s = uneven_furnace();
   const uint32_t ball = add_material(s, coated(glass_of(0, false), 0));
   s.spheres.push_back({{0.1f, -0.2f, 0.7f}, 0.4f, false, ball, no_light});
@@ -85,7 +85,8 @@ TEST_CASE("glass under coats and films is not seen in a furnace") {
   const PreparedScene scene(std::move(s));
   RenderOptions o = furnace_options();
   const Ensemble e = render_ensemble(scene, furnace_camera(), o, 32);
-  // Rough coats and films conserve energy within some percent per channel (docs/reference/materials.md).
+  // Rough coats and films conserve energy within some percent per channel
+  // (docs/reference/materials.md).
   CHECK(pixels_off(
             e, [](size_t) { return double(L0); }, 3e-2) == 0);
   CHECK(e.mean.mean() == doctest::Approx(double(L0)).epsilon(3e-3));
@@ -95,7 +96,7 @@ TEST_CASE("glass under coats and films is not seen in a furnace") {
   CHECK(mean_green(image) == doctest::Approx(double(L0)).epsilon(4e-3));
 }
 
-TEST_CASE("a lamp above a pane under coats, by every method") {
+TEST_CASE("a lamp above a coated pane gives the same light by every method") {
   for (const float roughness : {0.0f, 0.3f}) {
     Scene s;
     const uint32_t black = add_diffuse(s, Rgb{0});
@@ -114,7 +115,7 @@ TEST_CASE("a lamp above a pane under coats, by every method") {
 }
 
 // Mitsuba's emitters on bsdfs "null".
-TEST_CASE("a light that hides nothing adds to what shines through it") {
+TEST_CASE("a light that does not occlude adds to the light that passes through it") {
   Scene s;
   Material nothing;
   nothing.kind = MaterialKind::dielectric;

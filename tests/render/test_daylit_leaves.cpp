@@ -62,7 +62,7 @@ RenderResult picture(const PreparedScene& scene, Method method, int threads = 2,
 }  // namespace
 
 TEST_CASE(
-    "in the open no proofs are asked for, behind leaves or a wall; for a small error they are") {
+    "no certificates in the open, behind leaves or behind a wall, except for a small asked error") {
   for (const bool is_wall : {false, true}) {
     const Counters open =
         picture(leaves(With::sky, is_wall), Method::certified).statistics.counters;
@@ -75,7 +75,7 @@ TEST_CASE(
 }
 
 // Certificates cost far more than rays of the same error here.
-TEST_CASE("a wall in the open errs by what is asked, and rays are as even as fixed ones") {
+TEST_CASE("a wall in the open meets the asked error, with rays as uniform as fixed ones") {
   const PreparedScene scene = leaves(With::sky, true);
   const RenderResult mine = picture(scene, Method::certified),
                      fixed = picture(scene, Method::fixed);
@@ -87,7 +87,7 @@ TEST_CASE("a wall in the open errs by what is asked, and rays are as even as fix
   CHECK(off[off.size() / 2] < 0.01f);
 }
 
-TEST_CASE("where the sun shines the sky gets fewer rays") {
+TEST_CASE("in sunlight the sky gets fewer rays") {
   const auto counters = [](With with) {
     return picture(leaves(with), Method::certified, 2, 0.01, 4).statistics.counters;
   };
@@ -95,7 +95,7 @@ TEST_CASE("where the sun shines the sky gets fewer rays") {
   CHECK(double(sunny.shadow_rays) < 0.9 * double(shade.shadow_rays));
 }
 
-TEST_CASE("leaves under sky and sun are as bright as by fixed rays, on one thread and on two") {
+TEST_CASE("leaves under sky and sun agree with fixed rays, on one thread and on two") {
   const PreparedScene scene = leaves(With::sky_and_sun);
   const RenderResult a = picture(scene, Method::certified), b = picture(scene, Method::fixed),
                      one = picture(scene, Method::certified, 1);

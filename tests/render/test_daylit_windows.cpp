@@ -31,7 +31,7 @@ std::vector<Measurement> measured(const PreparedScene& scene,
 
 }  // namespace
 
-TEST_CASE("a window under an even sky gives its form factor times pi L") {
+TEST_CASE("a window under a uniform sky gives its form factor times pi L") {
   Scene s = WindowRoom::make(0);
   add_environment(s, Rgb{2});
   const PreparedScene scene(std::move(s));
@@ -63,7 +63,7 @@ TEST_CASE("a closed room is dark under any sky, sun and image") {
 }
 
 // No part of the sky is visible from inside, so it must not cost anything.
-TEST_CASE("a sky and a sun cost a closed room neither rays nor masks") {
+TEST_CASE("a sky and a sun cause neither rays nor masks in a closed room") {
   const auto counters_of = [](bool has_sky) {
     Scene s = WindowRoom::make(0, false);
     const uint32_t grey = add_diffuse(s, Rgb{0.5f});
@@ -116,7 +116,8 @@ Scene thick_room(float slit, bool has_sky) {
 }  // namespace
 
 // Certificates for single sky patches would cost far more than all other light.
-TEST_CASE("a room of thick walls that seems closed gets few rays, and no light is lost in slits") {
+TEST_CASE(
+    "a room with thick walls that seems closed gets few rays, and no light through slits is lost") {
   const Camera camera = look_at({.3f, .4f, 1.6f}, {4, 3, .5f}, {0, 0, 1}, 70);
   RenderOptions o;
   o.width = 24;
@@ -143,7 +144,9 @@ TEST_CASE("a room of thick walls that seems closed gets few rays, and no light i
   }
 }
 
-TEST_CASE("the sun's patch on the floor has the sun's light, and its edge the sun's width") {
+TEST_CASE(
+    "the sun's patch on the floor has the sun's light, and its edge the width of the sun's "
+    "penumbra") {
   Scene s = WindowRoom::make(0);
   const double irradiance = 500, radius = 0.00465;
   Light& sun = add_light(s, LightKind::sun, Rgb{float(irradiance / (pi * sqr(std::sin(radius))))});
@@ -164,7 +167,8 @@ TEST_CASE("the sun's patch on the floor has the sun's light, and its edge the su
 }
 
 // More occluders before the window than a facet list can hold: rays sample what is left of the sky.
-TEST_CASE("a thicket before a window: the mean of rays, and the same bytes for all threads") {
+TEST_CASE(
+    "a thicket in front of a window: same mean as rays, same bytes for any number of threads") {
   Scene s = WindowRoom::make(0);
   const uint32_t m = add_diffuse(s, Rgb{0});
   Random random(11);
@@ -217,7 +221,8 @@ Scene tree(bool is_glossy) {
 }  // namespace
 
 // Certificates do not help here and must not cost more than the rays that they would save.
-TEST_CASE("a tree in the open: the mean of fixed rays, by few rays and hardly any proofs") {
+TEST_CASE(
+    "a tree in the open: same mean as fixed rays, with few rays and hardly any certificates") {
   for (const bool is_glossy : {false, true}) {
     Scene s = tree(is_glossy);
     add_environment(s, Rgb{2});

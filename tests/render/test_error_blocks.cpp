@@ -48,7 +48,8 @@ double told_over_made(uint32_t n, bool is_expected, const Value& value) {
 
 }  // namespace
 
-TEST_CASE("the error told of a pixel with an edge: larger blocks of samples tell less too much") {
+TEST_CASE(
+    "the estimated error of a pixel with an edge: larger blocks of samples overestimate less") {
   // Through the pixel's centre, in any direction.
   const auto edge = [](uint64_t pixel, uint32_t, const Vec2& p) {
     const float angle = 2 * pi_f * unit_float(uint32_t(pixel >> 32));
@@ -65,7 +66,8 @@ TEST_CASE("the error told of a pixel with an edge: larger blocks of samples tell
   }
 }
 
-TEST_CASE("the error told of a pixel that glitters is what it makes, by blocks of any size") {
+TEST_CASE(
+    "the estimated error of a glittering pixel is its actual error, with blocks of any size") {
   const auto glitter = [](uint64_t pixel, uint32_t i, const Vec2&) {
     return double(hash_of(pixel, uint64_t{i}) & 1);
   };

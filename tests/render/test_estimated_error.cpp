@@ -128,7 +128,7 @@ Scene rooms_with_gap() {
 
 }  // namespace
 
-TEST_CASE("told error: of lamps that are smaller than a pixel") {
+TEST_CASE("estimated error: lamps smaller than a pixel") {
   const PreparedScene scene(room_with_small_lamps());
   Camera camera = look_at({-1.5f, -2, 1.5f}, {1.2f, 1.7f, 0.9f}, {0, 0, 1}, 75);
   // Slightly out of focus, so that the coverage of lamps is unknown (LightOutlines).
@@ -150,7 +150,7 @@ TEST_CASE("told error: of lamps that are smaller than a pixel") {
   CHECK(known.told > known.made);
 }
 
-TEST_CASE("told error: of what glitters within a pixel") {
+TEST_CASE("estimated error: glitter within a pixel") {
   const PreparedScene scene(room_with_chandelier());
   const Camera camera = look_at({-1.2f, -1.8f, 1.4f}, {0, 0, 1.7f}, {0, 0, 1}, 40);
   RenderOptions o = of_five_percent(24, 18);
@@ -166,7 +166,7 @@ TEST_CASE("told error: of what glitters within a pixel") {
   CHECK(e.made < 0.7 * of_even.made);
 }
 
-TEST_CASE("told error: of a lamp that all rays of a pixel see in gloss") {
+TEST_CASE("estimated error: a lamp that all rays of a pixel see in gloss") {
   const PreparedScene scene(room_with_shining_floor());
   const Camera camera = look_at({0, -1.8f, 1.3f}, {0, 1, 0}, {0, 0, 1}, 40);
   const Errors e = errors_of(scene, camera, of_five_percent(32, 24), 4);
@@ -176,7 +176,7 @@ TEST_CASE("told error: of a lamp that all rays of a pixel see in gloss") {
   CHECK(e.told < 3.5 * e.made);  // 3.9 if each hit counts as a rare event
 }
 
-TEST_CASE("told error: of a lit room that is seen through a gap") {
+TEST_CASE("estimated error: a lit room seen through a gap") {
   const PreparedScene scene(rooms_with_gap());
   const Camera camera = look_at({-1.8f, -0.3f, 1.3f}, {1, 0.1f, 1.2f}, {0, 0, 1}, 60);
   const Errors e = errors_of(scene, camera, of_five_percent(48, 36), 4);

@@ -79,13 +79,13 @@ void check_everywhere(const Scene& s, double irradiance) {
 
 }  // namespace
 
-TEST_CASE("the sun shines alike near the scene and ten million times its size away") {
+TEST_CASE("the sun is equally bright near the scene and ten million scene sizes away") {
   // pi L sin² of the angular radius, times the cosine of incidence.
   const double sine = std::sin(0.00465), cosine = 0.5 / std::sqrt(0.5);
   check_everywhere(plate_in_sun(), 1000 * pi * sine * sine * cosine);
 }
 
-TEST_CASE("uniform surroundings shine alike near the scene and far away") {
+TEST_CASE("uniform surroundings are equally bright near the scene and far away") {
   // The plate hides less than the allowed error at .2 m.
   check_everywhere(plate_in_surroundings(), 2 * pi);
 }

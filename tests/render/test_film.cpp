@@ -52,7 +52,7 @@ TEST_CASE("the picture is the mean of its samples, the error layer their standar
   CHECK(layer_named(layers, "error").channels.size() == 1);
 }
 
-TEST_CASE("samples that are all alike have no error, however bright") {
+TEST_CASE("equal samples have no error, however bright") {
   for (const float value : {0.1f, 3.3f, 1.2345e5f}) {
     Film film({0, 0, 1, 1}, {Aov::error});
     const RadianceBatch b = batch_of(std::vector<Rgb>(100, Rgb{value, value * 0.7f, value * 0.3f}));
@@ -121,7 +121,7 @@ double independent_error_of(const std::vector<float>& values) {
 
 }  // namespace
 
-TEST_CASE("of whole pictures, what samples differ by within a pixel is told") {
+TEST_CASE("the spread of samples within pixels is reported for whole pictures") {
   // An edge: of every four samples two lie on either side.
   std::vector<float> edge, spikes;
   for (int i = 0; i < 64; ++i) {

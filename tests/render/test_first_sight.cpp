@@ -38,7 +38,8 @@ Scene walls_and_crumbs() {
 
 }  // namespace
 
-TEST_CASE("a first sight shows where rays meet something, and how it leans, for any threads") {
+TEST_CASE(
+    "a first sight shows where rays hit and how surfaces are tilted, for any number of threads") {
   const Scene scene = walls_and_crumbs();
   const Camera camera = look_at({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 60);
   const ViewingCamera viewing(camera, 96, 72);
@@ -76,7 +77,7 @@ TEST_CASE("a first sight shows where rays meet something, and how it leans, for 
   CHECK(differ == 0);
 }
 
-TEST_CASE("a preview shows a first sight of scenes that are large or wait for images alone") {
+TEST_CASE("a preview shows a first sight only of scenes that are large or wait for images") {
   for (const bool waits : {false, true})
     for (const size_t triangles : {size_t{1000}, size_t{200'001}}) {
       Scene scene = walls_and_crumbs();

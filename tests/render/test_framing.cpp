@@ -30,7 +30,7 @@ void add_box(Scene& s, const Vec3& low, const Vec3& high, bool is_room) {
 
 }  // namespace
 
-TEST_CASE("a room is shown from within, an object from before it") {
+TEST_CASE("a room is shown from inside, an object from the front") {
   Scene room;
   add_box(room, {0, 0, 0}, {5, 3, 4}, true);
   add_box(room, {2, 0, 1}, {3, 0.8f, 2}, false);

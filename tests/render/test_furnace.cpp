@@ -23,7 +23,7 @@ TEST_CASE("in a furnace every pixel is as bright as every other") {
   CHECK(e.mean.standard_error() < 2e-3 * double(L0));  // precise enough for the test
 }
 
-TEST_CASE("a furnace with glass, mirrors and gloss in it") {
+TEST_CASE("a furnace with glass, mirrors and gloss is uniform") {
   Scene s = uneven_furnace();
   Material glass;
   glass.kind = MaterialKind::dielectric;
@@ -52,7 +52,7 @@ TEST_CASE("a furnace with glass, mirrors and gloss in it") {
   CHECK(p_of_mean(e.mean, double(L0), 5e-4 * double(L0)) > 1e-4);
 }
 
-TEST_CASE("fixed and path show the same exactly known floor, pixel by pixel") {
+TEST_CASE("fixed and path agree with a floor of known radiance, pixel by pixel") {
   Scene s;
   const float rho = 0.6f;
   const uint32_t grey = add_diffuse(s, Rgb{rho});

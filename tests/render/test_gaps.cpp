@@ -39,7 +39,7 @@ Image reflected(const PreparedScene& scene, const RenderOptions& o) {
 
 }  // namespace
 
-TEST_CASE("a ceiling close above black panels shows what it gets between them") {
+TEST_CASE("a ceiling close above black panels shows the light that enters between them") {
   for (const float gap : {0.01f, 0.05f}) {
     CAPTURE(gap);
     const PreparedScene scene(room_under_panels(gap));

@@ -68,7 +68,7 @@ size_t specks(const Image& image) {
 
 }  // namespace
 
-TEST_CASE("gathered gloss: no bright specks where a small patch lights a room") {
+TEST_CASE("gathered gloss: no bright specks if a small patch lights a room") {
   const PreparedScene scene(room_with_patch(coated(0.7f, 1)));
   size_t sum = 0;
   for (uint64_t seed = 0; seed < 8; ++seed) {
@@ -80,7 +80,7 @@ TEST_CASE("gathered gloss: no bright specks where a small patch lights a room") 
   CHECK(sum <= 8);
 }
 
-TEST_CASE("gathered gloss: as bright as by paths, whatever its width") {
+TEST_CASE("gathered gloss: agrees with paths for any width") {
   for (const Material& m :
        {coated(0.5f, 1), coated(0.1f, 0.4f), metal(0.8f, 0.7f), metal(0.8f, 0.25f)}) {
     Scene s;
@@ -105,7 +105,7 @@ TEST_CASE("gathered gloss: as bright as by paths, whatever its width") {
 }
 
 // Rays of the lobe look for lamps there, in competition with points sampled on lamps.
-TEST_CASE("gathered gloss: as bright as by paths where it is seen from the side under lamps") {
+TEST_CASE("gathered gloss: agrees with paths at grazing view under lamps") {
   for (const int lamps : {6, 2}) {
     Scene s;
     const Material gloss = lamps == 6 ? coated(0.2f, 0.22f) : metal(0.6f, 0.3f);
@@ -139,7 +139,7 @@ TEST_CASE("gathered gloss: as bright as by paths where it is seen from the side 
   }
 }
 
-TEST_CASE("the error that is told has the noise of what gloss shows") {
+TEST_CASE("the estimated error includes the noise of gloss") {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.6f}), {-2, -2, 0}, {2, 2, 2.5f});
   add_quad(s, add_material(s, metal(0.9f, 0.1f)),

@@ -68,7 +68,7 @@ void check_is_a_picture(const Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("certified light is the same by instances and by copies") {
+TEST_CASE("certified light is the same with instances and with copies") {
   const Scene scene = room_of_instances(places_in_room());
   check_is_a_picture(scene);
   const RenderOptions o = small_options(Method::certified, Indirect::none);
@@ -78,7 +78,7 @@ TEST_CASE("certified light is the same by instances and by copies") {
   CHECK(d.rms < 1e-4);
 }
 
-TEST_CASE("every method shows of instances what it shows of copies") {
+TEST_CASE("every method gives the same picture with instances and with copies") {
   const Scene scene = room_of_instances(places_in_room());
   for (const auto& [method, indirect, most] : {std::tuple{Method::fixed, Indirect::none, 5e-3},
                                                {Method::path, Indirect::automatic, 0.02},
@@ -110,7 +110,7 @@ TEST_CASE("a first sight shows instances") {
   CHECK(a.pixels == first_sight(copied_out(scene), viewing, window, 1).pixels);
 }
 
-TEST_CASE("places all over a scene lie on instances too, as many as their area says") {
+TEST_CASE("random places in a scene lie on instances in proportion to their area") {
   Scene scene =
       room_of_instances({Affine::translate({0, 0, 1.2}) * Affine::scale({-1, 1, 1}),
                          Affine::translate({1.2, 1.2, 0.5}) * Affine::scale({.4, .4, .4})});
@@ -129,7 +129,7 @@ TEST_CASE("places all over a scene lie on instances too, as many as their area s
   }
 }
 
-TEST_CASE("instances before a mirror, behind it and across it") {
+TEST_CASE("instances in front of a mirror, behind it and across it") {
   Scene scene = room_of_instances({Affine::translate({0.2, 0, 1}) * Affine::scale({.4, .4, .4}),
                                    Affine::translate({0.2, 0.9, 1}) * Affine::scale({.2, -.3, .2}),
                                    Affine::translate({0.2, -.9, 1}) * Affine::scale({.3, .3, .3})});

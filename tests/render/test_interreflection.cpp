@@ -62,7 +62,7 @@ void check_points(const std::vector<Rectangle>& rectangles, double size,
 
 }  // namespace
 
-TEST_CASE("measure: plates that face each other") {
+TEST_CASE("measure: parallel plates") {
   check_points(facing_plates(), 0.25,
                {{{1, 1, 0}, {0, 0, 1}}, {{0.1, 0.2, 0}, {0, 0, 1}}, {{1.9, 1, 1}, {0, 0, -1}}});
 }

@@ -81,7 +81,7 @@ TEST_CASE("kj92: byte-identical for any number of threads, with and without cohe
     }
 }
 
-TEST_CASE("kj92: identical too with hundreds of sources, more than a thread keeps patterns for") {
+TEST_CASE("kj92: identical with hundreds of sources, more than a thread stores patterns for") {
   Scene s = room_with_table();
   const uint32_t black = add_diffuse(s, Rgb{0});
   for (int i = 0; i < 150; ++i) {
@@ -110,7 +110,7 @@ TEST_CASE("kj92: identical too with hundreds of sources, more than a thread keep
   }
 }
 
-TEST_CASE("kj92: the mean of path's picture") {
+TEST_CASE("kj92: the mean agrees with path") {
   const PreparedScene scene(room_with_table());
   RenderOptions o = coarse();
   o.kj92.radiosity.unshot_fraction = 0.01f;
@@ -122,7 +122,7 @@ TEST_CASE("kj92: the mean of path's picture") {
         doctest::Approx(mean(render_now(scene, table_camera(), o).layers[0].image)).epsilon(0.015));
 }
 
-TEST_CASE("kj92 --indirect none: the direct light of the fixed method") {
+TEST_CASE("kj92 --indirect none: agrees with the direct light of the fixed method") {
   const PreparedScene scene(mixed_room());
   RenderOptions o = coarse();
   o.indirect = Indirect::none;
@@ -133,7 +133,7 @@ TEST_CASE("kj92 --indirect none: the direct light of the fixed method") {
   CHECK(mean(mine) == doctest::Approx(mean(fixed)).epsilon(0.02));
 }
 
-TEST_CASE("kj92: refinement adds rays at edges and shadow boundaries, and gains by it") {
+TEST_CASE("kj92: refinement adds rays at edges and shadow boundaries and reduces the error") {
   const PreparedScene scene(room_with_table());
   RenderOptions o = coarse();
   o.indirect = Indirect::none;
@@ -174,7 +174,7 @@ TEST_CASE("kj92: refinement adds rays at edges and shadow boundaries, and gains 
   CHECK(with < 1.1 * spread);
 }
 
-TEST_CASE("kj92: refinement where nothing differs adds nothing") {
+TEST_CASE("kj92: refinement adds no rays in uniform regions") {
   Scene s;
   add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}});
   add_ceiling_light(s, 3, 3, Rgb{2});
@@ -186,7 +186,7 @@ TEST_CASE("kj92: refinement where nothing differs adds nothing") {
   CHECK(r.statistics.counters.viewing_rays == uint64_t(o.width) * uint64_t(o.height));
 }
 
-TEST_CASE("kj92: a stop during preprocessing or rendering comes back soon, with what there is") {
+TEST_CASE("kj92: a stop during preprocessing or rendering returns soon, with the work done") {
   const PreparedScene scene(mixed_room());
   for (const double after : {0.0, 0.15, 0.8}) {
     const bool is_rendering = after > 0.5;  // stopped by rendering progress, not by time
@@ -228,7 +228,7 @@ TEST_CASE("kj92: a stop during preprocessing or rendering comes back soon, with 
   CHECK(!r.is_measured[0]);
 }
 
-TEST_CASE("kj92: crops and single pixels") {
+TEST_CASE("kj92: crops and single pixels equal the whole picture") {
   const PreparedScene scene(room_with_table());
   RenderOptions o = coarse();
   const auto preparation =
@@ -259,7 +259,7 @@ TEST_CASE("kj92: crops and single pixels") {
   }
 }
 
-TEST_CASE("kj92: scenes without light, without geometry, out of sight") {
+TEST_CASE("kj92: scenes without light, without geometry or out of view") {
   Scene dark = room_with_table();
   dark.lights.clear();
   for (Mesh& m : dark.meshes) m.lights.clear();
@@ -336,7 +336,8 @@ TEST_CASE("kj92: a light that touches a wall has no worse pixels than path's") {
   CHECK(worst < 5 * worst_path + 0.1);
 }
 
-TEST_CASE("kj92room: the floor under the table samples D, open floor only probes") {
+TEST_CASE(
+    "kj92room: source D is sampled on the floor under the table and only probed on open floor") {
   const std::string file = std::string(TROFFER_SOURCE_DIR) + "/scenes/kj92room/kj92room_full.pbrt";
   if (!std::filesystem::exists(file)) {
     MESSAGE("no scene " << file);

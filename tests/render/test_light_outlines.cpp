@@ -188,7 +188,7 @@ TEST_CASE("light outlines: sides that pieces share do not count twice, in large 
   CHECK(std::abs(bias) < 0.001 * double(known));
 }
 
-TEST_CASE("light outlines: nothing is known of what hides, varies or is out of focus") {
+TEST_CASE("light outlines: unknown for lamps that are partly hidden, textured or out of focus") {
   Lamps hidden;
   make_light(hidden.scene, hidden.quad(-0.4f, -0.4f, 0.8f), Rgb{1});
   Lamps before = hidden, lens = hidden, behind = hidden, away = hidden, textured = hidden;
@@ -221,7 +221,7 @@ TEST_CASE("light outlines: nothing is known of what hides, varies or is out of f
   CHECK(look(textured).known == 0);
 }
 
-TEST_CASE("lamps in sight: the mean stays, in pixels with things before them too; noise does not") {
+TEST_CASE("visible lamps: same mean, also in pixels with occluders, and less noise") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f, 0.5f, 0.4f});
   add_box_inside(s, grey, {0, 0, 0}, {3, 3, 2.5f});

@@ -48,7 +48,7 @@ std::vector<double> blocks(const Image& image) {
 
 }  // namespace
 
-TEST_CASE("reflected light has no stains, and the same mean, from seed to seed") {
+TEST_CASE("reflected light has no blotches and the same mean for every seed") {
   const PreparedScene scene(room_with_patch());
   std::vector<std::vector<double>> pictures;
   for (uint64_t seed = 1; seed <= 8; ++seed)

@@ -40,7 +40,7 @@ double rms_told(const RenderResult& r) {
 
 }  // namespace
 
-TEST_CASE("a picture without any time is whole, right in the mean, and says how far it is off") {
+TEST_CASE("a picture with zero time is complete, has the right mean, and reports its error") {
   const PreparedScene scene(mixed_room());
   RenderOptions right = options_for(Method::path);
   right.spp = 512;
@@ -90,7 +90,7 @@ TEST_CASE("a time limit that is not reached changes nothing; a stop is no time l
   }
 }
 
-TEST_CASE("a part-way picture keeps what it has: the rest alone is filled") {
+TEST_CASE("an unfinished picture keeps its pixels; only the rest is filled") {
   const PreparedScene scene(mixed_room());
   RenderOptions o = options_for(Method::fixed);
   o.threads = 1;
@@ -116,7 +116,7 @@ TEST_CASE("a part-way picture keeps what it has: the rest alone is filled") {
   CHECK(black_pixels(r.layers[0].image) < 48 * 36 / 20);
 }
 
-TEST_CASE("time that is up after cells are made leaves a picture by cells, far better than paths") {
+TEST_CASE("a time limit after cells are made gives a picture by cells, far better than by paths") {
   const PreparedScene scene(mixed_room());
   RenderOptions right = options_for(Method::path);
   right.spp = 2048;
@@ -160,7 +160,8 @@ TEST_CASE("time that is up after cells are made leaves a picture by cells, far b
   CHECK(actual_error(by_cells) < 0.5 * actual_error(by_paths));
 }
 
-TEST_CASE("an error limit ends the work when the picture tells no more, the same for any threads") {
+TEST_CASE(
+    "an error limit ends the work when the estimated error reaches it, for any number of threads") {
   const PreparedScene scene(mixed_room());
   for (const Method method : {Method::path, Method::fixed, Method::certified}) {
     CAPTURE(std::string(method.row().name));

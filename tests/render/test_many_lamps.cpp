@@ -40,7 +40,9 @@ Scene lamps_over_clutter() {
 
 }  // namespace
 
-TEST_CASE("points under many lamps are told what they err by, though few samples find one hidden") {
+TEST_CASE(
+    "the estimated error of points under many lamps is right even if few samples find a hidden "
+    "lamp") {
   const PreparedScene scene(lamps_over_clutter());
   Random random(7);
   std::vector<MeasuringPoint> points(30);

@@ -33,7 +33,7 @@ Scene source_from(float x0) {
 
 }  // namespace
 
-TEST_CASE("a source with holes lights as much as what is left of it") {
+TEST_CASE("a source with holes emits as much as its remaining area") {
   Scene s = source_from(-1);
   Texture mask;
   mask.kind = TextureKind::image;

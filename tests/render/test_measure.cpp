@@ -88,7 +88,7 @@ TEST_CASE("estimates have no bias: z-scores of many points") {
   CHECK(std::abs(sum / std::sqrt(double(points.size()))) < 4);
 }
 
-TEST_CASE("a closed white-ish room: mean irradiance is flux / (area (1 - reflectance))") {
+TEST_CASE("a closed bright room: mean irradiance is flux / (area (1 - reflectance))") {
   // All walls emit alike, so irradiance is the same everywhere: E = pi L / (1 - rho).
   Scene s;
   const float rho = 0.6f, radiance = 2;
@@ -113,7 +113,7 @@ TEST_CASE("a closed white-ish room: mean irradiance is flux / (area (1 - reflect
 
 // The foot of a wall that is lit from the front, then from the back; a corner of two walls; a
 // table's leg.
-TEST_CASE("points exactly in another surface are measured before its front by every method") {
+TEST_CASE("points exactly in another surface are measured in front of it by every method") {
   for (const bool is_front_lit : {true, false}) {
     Scene s = lit_floor();
     std::array<Vec3, 4> wall{Vec3{2, -9, 0}, {2, -9, 1}, {2, 9, 1}, {2, 9, 0}};
@@ -146,7 +146,7 @@ TEST_CASE("points exactly in another surface are measured before its front by ev
   }
 }
 
-TEST_CASE("photometric scenes measure lux as they are") {
+TEST_CASE("photometric scenes are measured in lux directly") {
   Scene s = lit_floor();
   s.is_photometric = true;
   const PreparedScene scene(std::move(s));

@@ -64,7 +64,7 @@ Measurement at(const PreparedScene& scene, const Vec3d& point, const Vec3& norma
 
 }  // namespace
 
-TEST_CASE("a lamp whole in a mirror sends what its image would, and no noise") {
+TEST_CASE("a lamp fully visible in a mirror sends the light of its mirror image, without noise") {
   Scene s;
   const uint32_t black = add_diffuse(s, Rgb{0});
   add_mirror_square(s, add_mirror(s), 3);
@@ -80,7 +80,7 @@ TEST_CASE("a lamp whole in a mirror sends what its image would, and no noise") {
   }
 }
 
-TEST_CASE("in a mirror that shows nothing but a lamp, the mirror shines as the lamp does") {
+TEST_CASE("a mirror that shows nothing but a lamp is as bright as the lamp") {
   Scene s;
   const uint32_t black = add_diffuse(s, Rgb{0});
   add_mirror_square(s, add_mirror(s, 1), 0.4f);
@@ -95,7 +95,7 @@ TEST_CASE("in a mirror that shows nothing but a lamp, the mirror shines as the l
   }
 }
 
-TEST_CASE("what stands before a mirror hides lamps in it, on either way") {
+TEST_CASE("objects in front of a mirror hide lamps in it, on both legs of the path") {
   for (const float z : {0.5f, 1.5f}) {
     Scene s;
     const uint32_t black = add_diffuse(s, Rgb{0});
@@ -117,7 +117,7 @@ TEST_CASE("what stands before a mirror hides lamps in it, on either way") {
   }
 }
 
-TEST_CASE("every kind of light is seen in a mirror as by paths") {
+TEST_CASE("every kind of light in a mirror agrees with paths") {
   for (int kind = 0; kind < 3; ++kind) {
     Scene s;
     const uint32_t black = add_diffuse(s, Rgb{0});
@@ -139,7 +139,7 @@ TEST_CASE("every kind of light is seen in a mirror as by paths") {
   }
 }
 
-TEST_CASE("a point light, which no path finds, is seen in a mirror by the inverse square") {
+TEST_CASE("a point light in a mirror, which no path finds, follows the inverse square law") {
   Scene s;
   add_diffuse(s, Rgb{0});
   add_mirror_square(s, add_mirror(s, 1), 2);
@@ -152,7 +152,7 @@ TEST_CASE("a point light, which no path finds, is seen in a mirror by the invers
   }
 }
 
-TEST_CASE("rooms with mirrors, in pictures: the mean of paths, and the same for any threads") {
+TEST_CASE("pictures of rooms with mirrors: same mean as paths, same for any number of threads") {
   Scene s;
   const uint32_t white = add_diffuse(s, Rgb{0.6f});
   const uint32_t mirror = add_mirror(s, 0.9f);
@@ -179,7 +179,8 @@ TEST_CASE("rooms with mirrors, in pictures: the mean of paths, and the same for 
         doctest::Approx(mean(paths.layers.at(0).image)).epsilon(0.006));
 }
 
-TEST_CASE("the image of a scene: what is cut, what is behind, what cannot be cut") {
+TEST_CASE(
+    "the mirror image of a scene: cut triangles, triangles behind, and shapes that cannot be cut") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
   const uint32_t material = add_mirror(s);

@@ -66,7 +66,7 @@ double error_of(const Image& image, const std::array<Image, 2>& halves) {
 
 }  // namespace
 
-TEST_CASE("objects in the open: by paths, within the error asked, and as it is told") {
+TEST_CASE("objects in the open are rendered by paths, within the asked and the estimated error") {
   const PreparedScene scene(heap_of_plates(3000));
   RenderOptions o = small_picture();
   std::array<Image, 2> halves;
@@ -96,7 +96,7 @@ TEST_CASE("objects in the open: by paths, within the error asked, and as it is t
   }
 }
 
-TEST_CASE("by paths: the same bytes for any number of threads, and in a crop") {
+TEST_CASE("rendering by paths: same bytes for any number of threads and in a crop") {
   const PreparedScene scene(heap_of_plates(500));
   RenderOptions o = small_picture();
   o.aovs = {Aov::direct, Aov::indirect, Aov::error, Aov::albedo};
@@ -110,8 +110,7 @@ TEST_CASE("by paths: the same bytes for any number of threads, and in a crop") {
   CHECK(pixels_off_crop(whole, render_now(scene, above, o), o.crop) == 0);
 }
 
-TEST_CASE(
-    "--indirect auto: cells where paths would take more, where few viewing rays are allowed") {
+TEST_CASE("--indirect auto: cells if paths would cost more, or if few viewing rays are allowed") {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.7f}), {-2, -2, 0}, {2, 2, 2.5f});
   add_ceiling_light(s, 0.4f, 2.45f, Rgb{50});
@@ -131,7 +130,7 @@ TEST_CASE(
   CHECK_FALSE(render_now(heap, above, o).statistics.is_by_paths);
 }
 
-TEST_CASE("--indirect auto: cells where light comes by few paths, so that most see none") {
+TEST_CASE("--indirect auto: cells if only few paths find light") {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.6f}), {-1, -1, 0}, {1, 1, 2});
   // On the floor behind the camera.
@@ -144,7 +143,7 @@ TEST_CASE("--indirect auto: cells where light comes by few paths, so that most s
   CHECK_FALSE(render_now(room, inside, o).statistics.is_by_paths);
 }
 
-TEST_CASE("--indirect auto: cells are given up once they are more than paths are worth") {
+TEST_CASE("--indirect auto: cells are abandoned if they cost more than paths") {
   const PreparedScene scene(heap_of_plates(3000));
   const ViewingCamera camera(above, 160, 120);
   const PictureView view{{0, 0, 160, 120}, {0, 0, 160, 120}, [&](float x, float y) {
@@ -162,7 +161,7 @@ TEST_CASE("--indirect auto: cells are given up once they are more than paths are
   CHECK(render_now(scene, above, o).statistics.is_by_paths);
 }
 
-TEST_CASE("forecast of paths: rays by the error and by how even they are, as many for each pixel") {
+TEST_CASE("forecast of paths: the number of rays follows from the asked error and the variance") {
   const PreparedScene scene(heap_of_plates(1000));
   const auto forecast = [&](int width, double error, int most) {
     const int height = width * 3 / 4;

@@ -60,7 +60,7 @@ double mean_light(const std::vector<PointLight>& l) {
 
 }  // namespace
 
-TEST_CASE("a point that errs by no more than planned keeps its plan") {
+TEST_CASE("a point with no more error than planned keeps its plan") {
   PointPlan plan{4096, 1, 32, 0.0025};
   for (const PointLight& p : {of_errors(100, 0.1, 0.2), of_errors(0, 1, 1)}) {
     CHECK(enough_for_one(p, plan).samples == 4096);
@@ -73,7 +73,7 @@ TEST_CASE("a point that errs by no more than planned keeps its plan") {
   CHECK(enough_for_one(of_errors(100, 50, 50), plan).samples == 4096);
 }
 
-TEST_CASE("plans bring the error down to what is aimed at, by more of what errs") {
+TEST_CASE("plans reach the target error by more samples of the noisier kind") {
   const PointPlan before{4096, 1, 32, 0.0025};
   for (const double direct : {0.0, 0.01, 0.1, 0.5, 1.0, 2.0})
     for (const double indirect : {0.0, 0.01, 0.1, 0.5, 1.0, 2.0}) {
@@ -101,7 +101,7 @@ TEST_CASE("plans bring the error down to what is aimed at, by more of what errs"
   CHECK(enough_for_one(of_errors(100, 0.001, 0.9), before).samples_per_direct == 16 * 32);
 }
 
-TEST_CASE("no plan takes more than its most, and one kind of samples grows by itself") {
+TEST_CASE("no plan exceeds its maximum, and each kind of samples can grow alone") {
   PointPlan plan{4096, 1, 32, 0.0025};
   plan.most_times = 128;
   CHECK(enough_for_one(of_errors(100, 0, 1000), plan).samples == 128 * 4096);
@@ -111,7 +111,7 @@ TEST_CASE("no plan takes more than its most, and one kind of samples grows by it
   CHECK(enough_for_one(of_errors(100, 0.3, 0.4), plan).samples == 4 * 4096);
 }
 
-TEST_CASE("a list errs by what is aimed at, by hardly more samples than the least that could do") {
+TEST_CASE("a list reaches the target error with nearly the minimum number of samples") {
   Random random(7);
   for (const size_t points : {2u, 20u, 300u}) {
     CAPTURE(points);
@@ -136,7 +136,7 @@ TEST_CASE("a list errs by what is aimed at, by hardly more samples than the leas
   }
 }
 
-TEST_CASE("bright points are measured better than their own light alone asks for") {
+TEST_CASE("bright points are measured more accurately than their own light requires") {
   std::vector<PointLight> l(100, of_errors(1, 0, 0.01));
   l[40] = of_errors(50, 0, 0.5);  // the same relative error
   const std::vector<PointPlan> plans =
@@ -144,7 +144,7 @@ TEST_CASE("bright points are measured better than their own light alone asks for
   CHECK(plans[40].samples >= 4 * plans[0].samples);
 }
 
-TEST_CASE("points that cannot be measured well are not made up for by others") {
+TEST_CASE("points that cannot be measured well are not compensated by others") {
   std::vector<PointLight> l(10, of_errors(100, 0, 0.9));
   const std::vector<PointPlan> before(10, {4096, 1, 32, 0.0025});
   const std::vector<PointPlan> without = enough_for(l, before);
@@ -159,7 +159,7 @@ TEST_CASE("points that cannot be measured well are not made up for by others") {
   CHECK(with[0].samples >= without[0].samples);
 }
 
-TEST_CASE("few samples tell how many are wanted, and serve for nothing else") {
+TEST_CASE("pilot samples only decide the number of samples") {
   PointPlan plan{4096, 1, 32, 0.0025};
   plan.first_times = 0.5;
   plan.least_times = 2;
@@ -178,7 +178,7 @@ TEST_CASE("few samples tell how many are wanted, and serve for nothing else") {
   CHECK(enough_for_one(of_errors(100, 0, 0.9), plan).samples == 4096);
 }
 
-TEST_CASE("spare samples are taken where they still tell more than all of them share") {
+TEST_CASE("spare samples are spent only where the error is not dominated by the shared error") {
   PointPlan plan{4096, 1, 32, 0.0025};
   std::vector<PointLight> l(10, of_errors(100, 0, 0.2));  // accurate enough already
   const std::vector<PointPlan> plans(10, plan);
@@ -195,7 +195,7 @@ TEST_CASE("spare samples are taken where they still tell more than all of them s
   CHECK(samples_in_all(enough_for(l, plans, 1e9)) == had);
 }
 
-TEST_CASE("few draws that were all open want more of themselves alone") {
+TEST_CASE("few light samples that were all unoccluded ask for more light samples only") {
   PointPlan plan{4096, 1, 32, 0.0025};
   plan.first_times = 0.5;
   plan.least_times = 2;

@@ -93,7 +93,7 @@ double relative_rms(const std::vector<double>& a, const std::vector<double>& b) 
 
 }  // namespace
 
-TEST_CASE("behind slats points by cells are right where narrow ones are looked at closely") {
+TEST_CASE("behind slats, points by cells are right where narrow cells are refined") {
   const PreparedScene scene(blinds_in_the_sun());
   const List list(scene, points_above(12));
   const std::vector<double> paths = list.by_paths(1 << 16);
@@ -102,7 +102,7 @@ TEST_CASE("behind slats points by cells are right where narrow ones are looked a
   CHECK(relative_rms(list.by_cells(samples, {samples, samples, 0}, 1), paths) < 0.024);
 }
 
-TEST_CASE("cells for many points that are measured well have more rays, and less noise of theirs") {
+TEST_CASE("cells for many accurate points have more rays and less noise") {
   const PreparedScene scene(room_behind_a_partition());
   const List list(scene, points_behind_the_partition(16));
   constexpr int samples = 1 << 14;
@@ -131,7 +131,7 @@ TEST_CASE("cells for many points that are measured well have more rays, and less
 }
 
 // With few and with many rays of cells.
-TEST_CASE("what cells are off by is told, point by point") {
+TEST_CASE("the error of cells is included in the estimate of every point") {
   const PreparedScene scene(room_behind_a_partition());
   std::vector<MeasuringPoint> points = points_behind_the_partition(6);
   // Just below the gap, where some cells are far brighter than others.
@@ -173,7 +173,7 @@ TEST_CASE("what cells are off by is told, point by point") {
 }
 
 // In a room with lamps of 60 cm, 5 cm below the ceiling, over louvres of 5 cm.
-TEST_CASE("points in the gap behind a luminaire get the light that comes in at its edges") {
+TEST_CASE("points in the gap behind a luminaire get the light that enters at its edges") {
   Scene room = WindowRoom::make(0.7f, false);
   const uint32_t grey = add_diffuse(room, Rgb{0.7f});
   constexpr float x = 2, y = 2, r = 0.3f, z = WindowRoom::Z;
@@ -208,7 +208,7 @@ TEST_CASE("points in the gap behind a luminaire get the light that comes in at i
   CHECK(ratio == doctest::Approx(1).epsilon(0.012));
 }
 
-TEST_CASE("light straight from sources is as good where it takes part in few of many samples") {
+TEST_CASE("direct light is as accurate if only few of many samples include it") {
   Scene room = WindowRoom::make(0.5f);
   const uint32_t grey = add_diffuse(room, Rgb{0.6f});
   Random random(3);
@@ -248,7 +248,7 @@ TEST_CASE("light straight from sources is as good where it takes part in few of 
         4 * std::hypot(few.standard_error, usual.standard_error));
 }
 
-TEST_CASE("rays of cells among leaves that light passes do not branch at every leaf") {
+TEST_CASE("rays of cells among translucent leaves do not branch at every leaf") {
   Scene room = WindowRoom::make(0.5f);
   Material m;
   m.base_color.value = Rgb{0.3f};

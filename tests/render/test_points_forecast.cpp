@@ -63,7 +63,7 @@ PointsForecast forecast(const PreparedScene& scene, int points, double error = 0
 
 }  // namespace
 
-TEST_CASE("points by certified light and paths beside it are those of path tracing") {
+TEST_CASE("points by certified direct light plus paths agree with path tracing") {
   const PreparedScene scene = room_with_lamp();
   const auto places = measuring_places(scene, points_over_floor(200));
   const PointPlan plan{.samples = 2048, .samples_per_estimate = 1, .samples_per_direct = 32};
@@ -103,7 +103,7 @@ TEST_CASE("few points are measured by paths, many by cells") {
   CHECK(forecast(scene, 32, 0.1).is_for_paths());
 }
 
-TEST_CASE("a forecast tells as many samples as the error then takes") {
+TEST_CASE("a forecast predicts the number of samples that the error takes") {
   const PreparedScene scene = room_with_lamp();
   const PointsForecast f = forecast(scene, 32);
   const PointPlan plan{
@@ -116,14 +116,14 @@ TEST_CASE("a forecast tells as many samples as the error then takes") {
   CHECK(told > 0.0025 / 2.5);
 }
 
-TEST_CASE("where paths find no light, cells are to look for it") {
+TEST_CASE("if paths find no light, cells are used") {
   Scene s = WindowRoom::make(0.6f, false);  // all light comes from outside
   add_distant(s, {-0.5f, 0.1f, -0.75f}, Rgb{100});
   const PreparedScene dark(std::move(s));
   CHECK_FALSE(forecast(dark, 12).is_for_paths());
 }
 
-TEST_CASE("a lamp in a mirror, which few paths find, is asked for at all their vertices") {
+TEST_CASE("a lamp in a mirror, which few paths find, is sampled at all their vertices") {
   // A mirror in the opposite wall shows a lamp of 2 cm, which hardly any path would find.
   Scene s = WindowRoom::make(0.6f);
   Material mirror;
@@ -162,7 +162,8 @@ TEST_CASE("a lamp in a mirror, which few paths find, is asked for at all their v
   }
 }
 
-TEST_CASE("a forecast that is stopped is none; lists are measured alike by any number of threads") {
+TEST_CASE(
+    "a stopped forecast does not count; lists are measured identically by any number of threads") {
   const PreparedScene scene = room_with_lamp();
   const auto points = points_over_floor(6);
   const auto places = measuring_places(scene, points);
@@ -184,7 +185,8 @@ TEST_CASE("a forecast that is stopped is none; lists are measured alike by any n
   }
 }
 
-TEST_CASE("lists that are stopped at any time, while cells are made too, are told as incomplete") {
+TEST_CASE(
+    "lists that are stopped at any time, also while cells are made, are reported as incomplete") {
   const PreparedScene scene = room_with_lamp();
   const auto points = points_over_floor(40);
   for (const int milliseconds : {1, 10, 30, 60, 100}) {

@@ -80,7 +80,7 @@ Scene lit(Scene s, bool has_image, const std::vector<Vec3>& through) {
 
 }  // namespace
 
-TEST_CASE("a portal over a window changes no light, and takes most of the variance of paths") {
+TEST_CASE("a portal over a window does not change the light and removes most variance of paths") {
   for (const bool has_image : {false, true}) {
     CAPTURE(has_image);
     const PreparedScene with(lit(WindowRoom::make(0), has_image, portal(0.1f)));
@@ -97,7 +97,8 @@ TEST_CASE("a portal over a window changes no light, and takes most of the varian
 }
 
 // The window is larger than the portal, so the portal's own sides decide.
-TEST_CASE("through a portal smaller than the window its own form factor arrives, by all methods") {
+TEST_CASE(
+    "through a portal smaller than the window its own form factor arrives, with all methods") {
   const auto p = portal(-0.15f);
   const PreparedScene scene(lit(WindowRoom::make(0), false, p));
   const auto points = WindowRoom::points();
@@ -117,7 +118,7 @@ TEST_CASE("through a portal smaller than the window its own form factor arrives,
   }
 }
 
-TEST_CASE("outside of its portal a light brings nothing; all light is the same by all methods") {
+TEST_CASE("a light gives nothing outside of its portal; total light is the same with all methods") {
   Scene s = lit(WindowRoom::make(0.5f), false, portal(0.1f));
   add_quad(s, 0, {Vec3{5.5f, 0, 0}, {8, 0, 0}, {8, 4, 0}, {5.5f, 4, 0}});
   const PreparedScene scene(std::move(s));

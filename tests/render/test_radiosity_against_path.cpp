@@ -60,7 +60,7 @@ Compared compare(const std::vector<uint32_t>& points, const std::vector<Measurem
 
 }  // namespace
 
-TEST_CASE("kj92room: irradiance is the path tracer's, direct and in all") {
+TEST_CASE("kj92room: direct and total irradiance agree with the path tracer") {
   const std::string path = std::string(TROFFER_SOURCE_DIR) + "/scenes/kj92room/kj92room.gltf";
   const PreparedScene scene(import_scene(path));
   const StopFlag never = false;

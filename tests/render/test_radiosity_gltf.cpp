@@ -66,7 +66,7 @@ T value_at(const std::vector<uint8_t>& bytes, size_t at) {
 
 }  // namespace
 
-TEST_CASE("the display is glTF that loads, with every side that light reaches") {
+TEST_CASE("the displayable mesh is valid glTF with every side that light reaches") {
   const PreparedScene scene(small_room());
   const RadiositySolution s = solve(scene, coarse());
   size_t sides = 0;
@@ -93,7 +93,7 @@ TEST_CASE("the display is glTF that loads, with every side that light reaches") 
   }
 }
 
-TEST_CASE("colours of the display are radiosity times exposure") {
+TEST_CASE("colours of the displayable mesh are radiosity times exposure") {
   const PreparedScene scene(small_room());
   const RadiositySolution s = solve(scene, coarse());
   const std::vector<uint8_t> bytes = radiosity_gltf(scene.scene, s, GltfContainer::binary);
@@ -138,7 +138,7 @@ TEST_CASE("colours of the display are radiosity times exposure") {
   CHECK(floor_sum / floor_count < most);
 }
 
-TEST_CASE("the display of nothing is a file too") {
+TEST_CASE("the displayable mesh of an empty scene is a file too") {
   for (const bool is_dark : {false, true}) {
     Scene s;
     if (is_dark) add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {0, 0, 0}, {1, 1, 1});
@@ -154,7 +154,7 @@ TEST_CASE("the display of nothing is a file too") {
   }
 }
 
-TEST_CASE("worlds of other axes are turned") {
+TEST_CASE("scenes with other up axes are rotated") {
   Scene s = small_room();
   Camera c;  // z up and left-handed, as in pbrt
   c.right = {1, 0, 0};
@@ -175,7 +175,7 @@ TEST_CASE("worlds of other axes are turned") {
   }
 }
 
-TEST_CASE("a solution is saved and loaded by the façade; progress rises to the end") {
+TEST_CASE("a solution can be saved and loaded; progress rises to the end") {
   const PreparedScene scene(small_room());
   const StopFlag never = false;
   double last = -1;
@@ -197,7 +197,7 @@ TEST_CASE("a solution is saved and loaded by the façade; progress rises to the 
   CHECK_THROWS_AS(load_radiosity(scene, bytes, "f", &other, 2), InputError);
 }
 
-TEST_CASE("options that make no sense are refused") {
+TEST_CASE("senseless options are refused") {
   const auto refused = [](auto change) {
     RadiosityOptions o;
     change(o);

@@ -57,7 +57,7 @@ double share_that_holds(const std::vector<PointLight>& points, double lx) {
 
 }  // namespace
 
-TEST_CASE("kurtosis: 3 of normal sets, as much as there are sets where one differs from all") {
+TEST_CASE("kurtosis: 3 for normal sets, the number of sets if one differs from all others") {
   SampleSets same;
   for (int s = 0; s < most_sets; ++s) same.add({}, 7);
   CHECK(same.kurtosis() == 3);
@@ -78,7 +78,7 @@ TEST_CASE("kurtosis: 3 of normal sets, as much as there are sets where one diffe
   CHECK(sum == doctest::Approx(2.9 * (n - 1) / (n + 1)).epsilon(0.02));
 }
 
-TEST_CASE("points that missed rare light are told what others of the list have met") {
+TEST_CASE("points that missed rare light get the error that others of the list have found") {
   Random random(1);
   std::vector<PointLight> points;
   for (int i = 0; i < 300; ++i) points.push_back(point(random, 100, 0.001, 0.02, 1.5));
@@ -98,7 +98,7 @@ TEST_CASE("points that missed rare light are told what others of the list have m
   }
 }
 
-TEST_CASE("points whose sets are as normal keep their errors, and so does one by itself") {
+TEST_CASE("points with normally distributed sets keep their errors, and so does a single point") {
   Random random(2);
   std::vector<PointLight> points;
   for (int i = 0; i < 300; ++i) points.push_back(point(random, 100, i % 2 == 0 ? 0.01 : 0.1, 0, 0));
@@ -112,8 +112,7 @@ TEST_CASE("points whose sets are as normal keep their errors, and so does one by
   CHECK(one[0].all.standard_error == doctest::Approx(own));
 }
 
-TEST_CASE(
-    "neither dark points, which err by much of their light, nor bright ones spoil the others") {
+TEST_CASE("neither dark points, with large relative errors, nor bright ones affect the others") {
   Random random(4);
   std::vector<PointLight> points;
   for (int i = 0; i < 100; ++i) points.push_back(point(random, 1e-3, 0.01, 0.9, 1));

@@ -122,7 +122,8 @@ TEST_CASE("the edge map finds borders of objects, and every pixel that a small l
   }
 }
 
-TEST_CASE("the layer viewing_error is the spread of a pixel's rays, and the statistics sum it up") {
+TEST_CASE(
+    "the layer viewing_error is the spread of a pixel's rays, and the statistics summarize it") {
   const PreparedScene scene(matte_room());
   RenderOptions o;
   o.method = Method::certified;
@@ -189,7 +190,7 @@ int wanted_amid(const Value& value, bool tells = false) {
 }  // namespace
 
 // In clutter, a few rays that all see the same do not prove that nothing else is there.
-TEST_CASE("a pixel with even neighbours gets further rays amid clutter, and none beside a line") {
+TEST_CASE("a pixel with similar neighbours gets more rays amid clutter, and none beside a line") {
   const auto wanted = [&](const auto& varies) {
     return wanted_amid([&](int x, int y, int k) { return k == 0 && varies(x, y) ? 0.2 : 1.0; });
   };
@@ -205,7 +206,7 @@ TEST_CASE("a pixel with even neighbours gets further rays amid clutter, and none
   CHECK(wanted([](int x, int) { return x == middle + 1; }) > 200);
 }
 
-TEST_CASE("a slope wants no further rays, an edge fewer than chance") {
+TEST_CASE("a gradient needs no more rays, an edge fewer than random noise") {
   // Samples in the quarters of a pixel; 40 % from one pixel to the next.
   const auto slope = [](int x, int, int k) {
     return 1 + 0.4 * (x - middle) + (k % 2 == 0 ? -0.1 : 0.1);

@@ -159,7 +159,7 @@ TEST_CASE("direct and indirect light add up to the picture") {
   CHECK(mean(none.layers[0].image) == doctest::Approx(mean(direct)).epsilon(0.03));
 }
 
-TEST_CASE("depths add light pixel by pixel, and all of them make the whole") {
+TEST_CASE("light by depth adds up pixel by pixel to the whole") {
   const PreparedScene scene(mixed_room());
   RenderOptions o;
   o.method = Method::path;
@@ -177,7 +177,7 @@ TEST_CASE("depths add light pixel by pixel, and all of them make the whole") {
   CHECK(means[4] == doctest::Approx(means[5]).epsilon(0.01));
 }
 
-TEST_CASE("layers mean what they say") {
+TEST_CASE("layers have their documented meaning") {
   const PreparedScene scene(mixed_room());
   const Camera camera = mixed_room_camera();
   RenderOptions o = small_options(Method::path);
@@ -245,7 +245,7 @@ TEST_CASE("progress rises to one, one call at a time") {
   CHECK(last == 1);
 }
 
-TEST_CASE("a stop leaves every pixel the mean of what it has") {
+TEST_CASE("after a stop every pixel is the mean of its samples so far") {
   // All surfaces are black and emit 2, so any sample is exactly 2.
   Scene s;
   const uint32_t black = add_diffuse(s, Rgb{0});
@@ -278,7 +278,7 @@ TEST_CASE("a stop leaves every pixel the mean of what it has") {
   CHECK(mean(nothing.layers[0].image) == 0);
 }
 
-TEST_CASE("light that is not a number never reaches the picture") {
+TEST_CASE("NaN light never reaches the picture") {
   for (const float bad : {std::nanf(""), std::numeric_limits<float>::infinity()}) {
     Scene s = mixed_room();
     make_light(s,

@@ -19,7 +19,7 @@ SampleNeed need(const SampleSpread& spread, uint32_t most_effort_divisor, double
 
 }  // namespace
 
-TEST_CASE("what samples differ by says how many of them are wanted") {
+TEST_CASE("the spread of samples decides how many are needed") {
   CHECK(need({}, 1).count == 0);
   CHECK(need({.chance = 0.04}, 1).count == doctest::Approx(0.04 / allowed2));
   CHECK(need({.placed = 0.04}, 1).count == doctest::Approx(std::pow(0.04 / allowed2, 2.0 / 3)));
@@ -33,7 +33,7 @@ TEST_CASE("what samples differ by says how many of them are wanted") {
   }
 }
 
-TEST_CASE("the more rays of a pixel differ by what they meet, the less is done for each") {
+TEST_CASE("the more a pixel's rays differ by what they hit, the lower the effort for each") {
   // Lower effort does not help against independent variance alone.
   CHECK(need({.chance = 0.5}, 16).effort_divisor == 1);
   uint32_t last = 1;
@@ -48,7 +48,7 @@ TEST_CASE("the more rays of a pixel differ by what they meet, the less is done f
 }
 
 // If the number of rays is limited, each gets the full effort.
-TEST_CASE("a pixel that may not have as many rays as thrift wants does without") {
+TEST_CASE("a pixel whose ray limit is too low for reduced effort keeps the full effort") {
   const SampleSpread edge{.chance = 0.01, .placed = 100};
   const SampleNeed all = need(edge, 16);
   REQUIRE(all.effort_divisor == 16);
@@ -58,7 +58,7 @@ TEST_CASE("a pixel that may not have as many rays as thrift wants does without")
   CHECK(need(edge, 16, 0, 16).effort_divisor == 1);
 }
 
-TEST_CASE("thrift never takes more work than doing without") {
+TEST_CASE("reduced effort never costs more than full effort") {
   const auto work = [](const SampleNeed& n) { return n.count * (0.1 + 1.0 / n.effort_divisor); };
   for (const double chance : {1e-4, 1e-2, 1.0})
     for (const double placed : {0.0, 1e-2, 1.0})

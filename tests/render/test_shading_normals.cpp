@@ -70,7 +70,7 @@ std::string ragged_ball() {
 
 }  // namespace
 
-TEST_CASE("the default and path agree where shading normals lean, up to along the surface") {
+TEST_CASE("the default method and path agree for tilted shading normals, up to grazing ones") {
   for (const std::string& inside : {leaning(45), leaning(80), leaning(90), ragged_ball()}) {
     const TempFolder folder;
     const PreparedScene scene(import_scene(folder.write("scene.pbrt", room_with(inside))));

@@ -68,7 +68,7 @@ RenderOptions options_for(Method method, int width, int height) {
 
 }  // namespace
 
-TEST_CASE("shares cover what is asked for, each pixel once, and are about as large") {
+TEST_CASE("parts cover the requested pixels once each, and are about equally large") {
   for (const PixelRect& asked : {PixelRect{0, 0, 64, 48}, {5, 3, 100, 30}, {17, 9, 18, 200}})
     for (const bool has_whole_tiles : {false, true})
       for (const int side : {8, 16})
@@ -112,7 +112,7 @@ TEST_CASE("shares cover what is asked for, each pixel once, and are about as lar
     CHECK(share_of({0, 0, 16, 16}, rules(8, true), part, 4).width() == 8);
 }
 
-TEST_CASE("shares of a picture join to the whole of it, bit for bit, by every method") {
+TEST_CASE("merged parts equal the whole picture bit for bit, by every method") {
   for (const Method method : {Method::path, Method::fixed}) {
     RenderOptions o = options_for(method, 53, 37);
     check_shares(o, 4);
@@ -130,7 +130,8 @@ TEST_CASE("shares of a picture join to the whole of it, bit for bit, by every me
   check_shares(o, 3);
 }
 
-TEST_CASE("… by the default, of a picture larger than what its gathers look at") {
+TEST_CASE(
+    "merged parts equal the whole by default, for a picture larger than the gather neighbourhood") {
   RenderOptions o = options_for(Method::certified, 152, 24);
   o.error = 0.05;
   check_shares(o, 3);

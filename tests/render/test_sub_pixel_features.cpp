@@ -86,7 +86,7 @@ TEST_CASE("a leaf between the corners of a pixel is found, before a wall and bef
   }
 }
 
-TEST_CASE("what a wall hides is not found, nor are the tiles of a wall") {
+TEST_CASE("features hidden by a wall are not found, nor the tiles of a wall") {
   Scene hidden;
   add_wall(hidden);
   hidden.meshes.push_back(leaf_at(10.5f, 12.5f, far_away + 1));
@@ -115,7 +115,7 @@ TEST_CASE("a wire between rows of corners is found in every pixel that it runs t
   for (const Pixel2& p : pixels) CHECK(p.y == 20);
 }
 
-TEST_CASE("small spheres and disks are found, larger ones are left to the corners") {
+TEST_CASE("small spheres and disks are found; larger ones are found by the pixel corners instead") {
   Scene s;
   add_wall(s);
   const float metres = 5.0f / far_away;  // width of a pixel at that distance
@@ -133,7 +133,7 @@ TEST_CASE("small spheres and disks are found, larger ones are left to the corner
 }
 
 // Each wire extends ten thousand pixels beyond the picture on either side.
-TEST_CASE("of long wires only what lies in the picture takes time") {
+TEST_CASE("only the part of a long wire inside the picture takes time") {
   Scene s;
   add_wall(s);
   Mesh wires;

@@ -100,7 +100,7 @@ TEST_CASE("every method measures points, spots and distant lights as their close
   }
 }
 
-TEST_CASE("what stands before a point or a distant light keeps its light away, in every method") {
+TEST_CASE("objects in front of a point or a distant light block it, with every method") {
   Scene s = floor_of(0.5f);
   add_quad(s, 0, {Vec3{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}});
   add_point(s, {0, 0, 2}, Rgb{7});
@@ -121,7 +121,7 @@ TEST_CASE("what stands before a point or a distant light keeps its light away, i
   }
 }
 
-TEST_CASE("an open plain under a constant environment gets pi L, by every method") {
+TEST_CASE("an open plane under a constant environment gets pi L, with every method") {
   Scene s = floor_of(0.5f);
   add_environment(s, Rgb{2});
   const PreparedScene scene(std::move(s));
@@ -136,7 +136,7 @@ TEST_CASE("an open plain under a constant environment gets pi L, by every method
     }
 }
 
-TEST_CASE("an open plain gets of a sky, a sun and an image what they bring, by every method") {
+TEST_CASE("an open plane gets the illuminance of a sky, a sun and an image, with every method") {
   Scene s = floor_of(0.5f);
   SkyRequest request;
   request.kind = SkyKind::cie;
@@ -173,7 +173,7 @@ TEST_CASE("an open plain gets of a sky, a sun and an image what they bring, by e
     }
 }
 
-TEST_CASE("a convex body in a white environment: furnaces, whatever it is made of") {
+TEST_CASE("a convex body in a white environment is a furnace for any material") {
   const auto white = [](MaterialKind kind, float roughness) {
     Material m;
     m.kind = kind;
@@ -283,7 +283,7 @@ TEST_CASE("lights of all kinds together: the same bytes for 1 and 4 threads, the
   }
 }
 
-TEST_CASE("the preprocessing says which lights it leaves out") {
+TEST_CASE("the preprocessing reports the lights that it leaves out") {
   Scene s = floor_of(0.5f);
   add_ceiling_light(s, 1, 2, Rgb{5});
   CHECK(lights_left_out(s).empty());

@@ -49,7 +49,7 @@ RenderOptions small_picture() {
 }  // namespace
 
 TEST_CASE(
-    "glances: a pixel is what they and its samples know in the mean, and how far samples differ") {
+    "surrogates: a pixel is the mean of surrogate values plus the mean difference of its samples") {
   Film film({0, 0, 2, 1}, {Aov::direct, Aov::indirect, Aov::albedo});
   film.expect_surrogates();
   RadianceBatch b;
@@ -83,7 +83,7 @@ TEST_CASE(
   CHECK(e.standard_error == doctest::Approx(std::sqrt(0.25 + 1 * 3 / 5.0)));
 }
 
-TEST_CASE("glances: no pixel sends less light than none") {
+TEST_CASE("surrogates: no pixel gets negative") {
   Film film({0, 0, 1, 1}, {});
   film.expect_surrogates();
   RadianceBatch b;
@@ -96,7 +96,7 @@ TEST_CASE("glances: no pixel sends less light than none") {
   CHECK(film.layers()[0].image.at(0, 0) == Rgb{0.2f});
 }
 
-TEST_CASE("lamps evened out: no pixel sends less light than none, but what its rays brought") {
+TEST_CASE("light outlines: a pixel that would be negative keeps the value of its rays") {
   Film film({0, 0, 2, 1}, {});
   film.expect_surrogates();
   RadianceBatch b;
@@ -116,7 +116,7 @@ TEST_CASE("lamps evened out: no pixel sends less light than none, but what its r
   CHECK(film.layers()[0].image.at(1, 0).r == doctest::Approx(0.45f));
 }
 
-TEST_CASE("glances: the mean of a picture with blinds stays") {
+TEST_CASE("surrogates: the mean of a picture with blinds is unchanged") {
   const PreparedScene scene(room_behind_blinds());
   RenderOptions o = small_picture();
   o.spp = 4;
@@ -133,7 +133,7 @@ TEST_CASE("glances: the mean of a picture with blinds stays") {
   CHECK(std::abs(refined.mean() - even.mean()) < 3.3 * spread);
 }
 
-TEST_CASE("direct light alone: edges get the rays that they want, and the error is told") {
+TEST_CASE("direct light only: edges get the rays they need, and the error is estimated") {
   const PreparedScene scene(room_behind_blinds());
   RenderOptions o = small_picture();
   o.indirect = Indirect::none;
@@ -174,7 +174,9 @@ TEST_CASE("direct light alone: edges get the rays that they want, and the error 
   CHECK(std::abs(means.mean() - fixed.mean()) < 3.3 * spread);
 }
 
-TEST_CASE("glances: blinds before a window err by less than half, with fewer viewing rays") {
+TEST_CASE(
+    "surrogates: blinds in front of a window have less than half the error with fewer viewing "
+    "rays") {
   const PreparedScene scene(room_behind_blinds());
   RenderOptions o = small_picture();
   o.spp = o.max_spp = 128;
@@ -202,7 +204,7 @@ TEST_CASE("glances: blinds before a window err by less than half, with fewer vie
   CHECK(pixels_off_crop(refined, render_now(scene, at_window, o), o.crop) == 0);
 }
 
-TEST_CASE("refinement: pixels behind blinds err by about what is asked, and by less if less is") {
+TEST_CASE("refinement: pixels behind blinds have about the asked error, for two asked errors") {
   const PreparedScene scene(room_behind_blinds());
   // The product with two halves of a reference cancels the reference's noise.
   std::array<Image, 2> halves;
@@ -241,7 +243,7 @@ TEST_CASE("refinement: pixels behind blinds err by about what is asked, and by l
 
 // The light is two thousand times as bright as the room and three pixels wide. An error of a
 // thousandth of it is twice the picture's mean.
-TEST_CASE("glances: more at the outline of what is very bright") {
+TEST_CASE("surrogates: more at the outline of very bright objects") {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {0, 0, 0}, {3, 3, 2.5f});
   const Vec3 at{1.5f, 2.5f, 1.6f}, u{0.09f, 0, 0.03f}, v{-0.03f, 0, 0.09f};

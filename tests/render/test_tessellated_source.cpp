@@ -48,7 +48,7 @@ RenderOptions options() {
 
 }  // namespace
 
-TEST_CASE("certified: a panel of 20 000 triangles is one source, without a ray") {
+TEST_CASE("certified: a panel of 20 000 triangles is one source and needs no ray") {
   Scene whole = room(), cut = room();
   const Place place = place_of_panel();
   make_light(whole,

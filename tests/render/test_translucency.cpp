@@ -88,7 +88,7 @@ RenderOptions small_picture(Method method) {
 
 }  // namespace
 
-TEST_CASE("what lets light through and absorbs none is not seen in a furnace") {
+TEST_CASE("translucent material without absorption is invisible in a furnace") {
   const PreparedScene scene(white_screens());
   RenderOptions o = small_picture(Method::path);
   o.spp = 16;
@@ -106,7 +106,7 @@ TEST_CASE("what lets light through and absorbs none is not seen in a furnace") {
   CHECK(std::sqrt(squares / double(image.pixels.size())) < 0.05);
 }
 
-TEST_CASE("light through a round sheet, against the closed form") {
+TEST_CASE("light through a round sheet agrees with the closed form") {
   // Nothing surrounds the sheet, so each side sees half of the surroundings. On the darker sheet
   // most paths end by Russian roulette, whichever side they arrive at.
   constexpr double radius = 5, height = 0.5, radiance = 3;
@@ -136,7 +136,7 @@ TEST_CASE("light through a round sheet, against the closed form") {
   }
 }
 
-TEST_CASE("a curtain before the light: certified and cells as paths have it") {
+TEST_CASE("a curtain in front of a light: certified and cells agree with paths") {
   const PreparedScene scene(parted_room());
   RenderOptions o = small_picture(Method::path);
   o.spp = 4096;
@@ -162,7 +162,7 @@ TEST_CASE("a curtain before the light: certified and cells as paths have it") {
   CHECK(is_identical(render_now(scene, parted_camera(), o).layers, r.layers));
 }
 
-TEST_CASE("every method shows what comes straight from the light through a curtain") {
+TEST_CASE("every method shows the direct light through a curtain") {
   const PreparedScene scene(parted_room());
   RenderOptions o = small_picture(Method::path);
   o.indirect = Indirect::none;

@@ -36,7 +36,7 @@ Scene kitchen() {
 
 }  // namespace
 
-TEST_CASE("a floor lit by way of a worktop gets all of that light") {
+TEST_CASE("a floor lit by reflection off a worktop gets all of that light") {
   const PreparedScene scene(kitchen());
   const Camera camera = look_at({0.5f, 0.5f, 1.5f}, {3.2f, 4.2f, 0.9f}, {0, 0, 1}, 75);
   RenderOptions path;

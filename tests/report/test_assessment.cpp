@@ -104,7 +104,7 @@ TEST_CASE("a point source: cylindrical illuminance is I sin(a) / (pi d²), and i
   }
 }
 
-TEST_CASE("luminaires alone add up to all; a watt for each; the report of an office") {
+TEST_CASE("the report of an office: single luminaires add up to the total, with one watt each") {
   const Scene scene = small_office();
   AssessmentOptions o = options_of(256);
   o.power = {{"*", 20}, {"left", 40}};
@@ -135,7 +135,7 @@ TEST_CASE("luminaires alone add up to all; a watt for each; the report of an off
   CHECK(page.find("W/m² per 100 lx") != std::string::npos);
 }
 
-TEST_CASE("the default's figures are those of path tracing") {
+TEST_CASE("figures of the default method agree with path tracing") {
   const Scene scene = small_office();
   AssessmentOptions o = options_of(512), by_paths = options_of(4096);
   o.has_contributions = by_paths.has_contributions = false;
@@ -160,7 +160,7 @@ TEST_CASE("the default's figures are those of path tracing") {
     agree(a.cylinders[i].cylindrical, b.cylinders[i].cylindrical, 0.01);
 }
 
-TEST_CASE("UGR rises by 8 log10 k with light k times as strong, and does not know maintenance") {
+TEST_CASE("UGR rises by 8 log10 k with k times the light and does not depend on maintenance") {
   AssessmentOptions o = options_of(128);
   o.has_contributions = o.has_cylindrical = false;
   Scene bright = small_office();
@@ -176,7 +176,7 @@ TEST_CASE("UGR rises by 8 log10 k with light k times as strong, and does not kno
         doctest::Approx(5 * mean_of(a.surfaces[0].electric).value).epsilon(0.01));
 }
 
-TEST_CASE("daylight and electric light are told apart, whatever their names") {
+TEST_CASE("daylight and electric light are separated, whatever their names") {
   Scene s = small_office();
   s.lights[0].name = "sun";
   Light e;
@@ -191,7 +191,7 @@ TEST_CASE("daylight and electric light are told apart, whatever their names") {
   CHECK(lamps == std::vector<std::string>{"sun", "right"});
 }
 
-TEST_CASE("many luminaires are told by families") {
+TEST_CASE("many luminaires are reported in groups") {
   Scene s = small_office();
   for (int i = 0; i < 20; ++i)
     add_panel(s, "spot." + std::to_string(100 + i), 0.1f * float(i), 1, 0.05f, 2.7f, Rgb{100});
@@ -206,7 +206,7 @@ TEST_CASE("many luminaires are told by families") {
   CHECK_THROWS_AS(light_groups(s, {{"nobody", 5}}, 12), UsageError);
 }
 
-TEST_CASE("within two standard errors nothing is said to pass or to fail") {
+TEST_CASE("within two standard errors a requirement is undecided") {
   CHECK(verdict_of({510, 2}, 500, false) == Verdict::pass);
   CHECK(verdict_of({503, 2}, 500, false) == Verdict::open);
   CHECK(verdict_of({497, 2}, 500, false) == Verdict::open);
@@ -216,7 +216,7 @@ TEST_CASE("within two standard errors nothing is said to pass or to fail") {
   CHECK(verdict_of({500, 0}, 500, false) == Verdict::pass);
 }
 
-TEST_CASE("observers on the floor are judged by the task's UGR limit") {
+TEST_CASE("observers on the floor are rated by the task's UGR limit") {
   AssessmentOptions o = options_of(64);
   o.has_contributions = o.has_cylindrical = false;
   Scene bright = small_office();
@@ -240,7 +240,7 @@ TEST_CASE("observers on the floor are judged by the task's UGR limit") {
   for (const Check& c : assess(bright, o, {}, never_stop).checks) CHECK(c.quantity != "UGR");
 }
 
-TEST_CASE("an open check says how many samples would decide it") {
+TEST_CASE("an undecided check states how many samples would decide it") {
   // The value's distance is half of two standard errors: four times as many samples decide.
   const Check c{"desk", "p", "Ēm", "lx", 500, false, {503, 3}, verdict_of({503, 3}, 500, false)};
   CHECK(samples_to_decide(c, 1024).value() == doctest::Approx(4096));
@@ -250,7 +250,7 @@ TEST_CASE("an open check says how many samples would decide it") {
   CHECK_FALSE(samples_to_decide(equal, 1024).has_value());
 }
 
-TEST_CASE("a stop ends it, and too many points are refused") {
+TEST_CASE("a stop ends an assessment, and too many points are refused") {
   const StopFlag stopped = true;
   CHECK_FALSE(assess(small_office(), options_of(64), {}, stopped).is_complete);
   AssessmentOptions o = options_of(64);

@@ -54,7 +54,7 @@ using Areas = std::vector<double>;
 
 }  // namespace
 
-TEST_CASE("the slab under walls is no floor: 48 m² of 53.8") {
+TEST_CASE("a slab under walls does not count as floor: 48 m² of 53.8") {
   CHECK(house().areas() == Areas{48});
   House thin;  // walls without thickness, on a slab that extends 30 cm beyond them
   thin.body({-0.3f, -0.3f, -0.3f}, {6.3f, 8.3f, 0}).body({-0.3f, -0.3f, 2.8f}, {6.3f, 8.3f, 3.1f});
@@ -96,7 +96,7 @@ TEST_CASE("walls without top and bottom, and walls that miss each other by a mil
   CHECK(std::abs(gaps.areas()[0] - 48) < 0.002);
 }
 
-TEST_CASE("several rooms on one slab, parted above their doors") {
+TEST_CASE("several rooms on one slab, separated by walls above their doors") {
   House h = house();
   h.body({0, 3, 0}, {2, 3.1f, 2.8f}).body({2.9f, 3, 0}, {6, 3.1f, 2.8f});
   h.body({2, 3, 2.1f}, {2.9f, 3.1f, 2.8f});
@@ -108,7 +108,7 @@ TEST_CASE("several rooms on one slab, parted above their doors") {
   CHECK(floors[1].border == doctest::Approx(0.45));  // 15 % of 3 m
 }
 
-TEST_CASE("an L: its area, its rim, points and observers on it alone") {
+TEST_CASE("an L-shaped floor: its area, border, points and observers lie on it only") {
   House h = house();
   h.body({3, 4, 0}, {6.2f, 8.2f, 2.8f});
   CHECK(h.areas() == Areas{36});
@@ -136,7 +136,7 @@ TEST_CASE("furniture counts as floor; columns and free-standing walls do not") {
   CHECK(house().body({0, 6, 0}, {6, 8, 0.2f}).areas() == Areas{36, 12});       // a podium
 }
 
-TEST_CASE("a parapet under a window's glass is no floor") {
+TEST_CASE("a parapet under a window's glass does not count as floor") {
   House h;
   h.slab().roof();
   h.body({-0.2f, -0.2f, 0}, {6.2f, 0, 2.8f}).body({-0.2f, 0, 0}, {0, 8, 2.8f});
@@ -147,7 +147,7 @@ TEST_CASE("a parapet under a window's glass is no floor") {
   CHECK(h.areas() == Areas{48});
 }
 
-TEST_CASE("a floor of several pieces counts once: boards, overlaps, doubles") {
+TEST_CASE("a floor of several pieces counts once: boards, overlaps, duplicates") {
   House boards;
   boards.roof().walls();
   for (int i = 0; i < 24; ++i) {  // joints that do not share corners
@@ -163,7 +163,7 @@ TEST_CASE("a floor of several pieces counts once: boards, overlaps, doubles") {
   CHECK(twice.areas() == Areas{48});
 }
 
-TEST_CASE("sloping and turned floors") {
+TEST_CASE("sloping and rotated floors") {
   House ramp;
   ramp.body({-0.2f, -0.2f, 4}, {6.2f, 8.2f, 4.3f})
       .body({-0.2f, -0.2f, -0.5f}, {6.2f, 0, 4})

@@ -20,7 +20,7 @@ std::vector<std::string> names(const FoundSurfaces& found) {
 
 }  // namespace
 
-TEST_CASE("an office: its desk and its floor, neither cabinet nor shelf nor ceiling") {
+TEST_CASE("an office: desk and floor are found, but not cabinet, shelf or ceiling") {
   const PreparedScene scene(small_office());
   const FoundSurfaces found = find_surfaces(scene, up, "office-writing", 0.75);
   REQUIRE(names(found) == std::vector<std::string>{"desk", "floor"});
@@ -36,7 +36,9 @@ TEST_CASE("an office: its desk and its floor, neither cabinet nor shelf nor ceil
   CHECK(floor.profile == "background");
 }
 
-TEST_CASE("without desks a plane above each floor; floors of two storeys; no roof") {
+TEST_CASE(
+    "without desks there is a work plane above each floor; two storeys have two floors; roofs do "
+    "not count") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
   add_box_inside(s, grey, {0, 0, 0}, {4, 3, 2.6f});
@@ -53,7 +55,7 @@ TEST_CASE("without desks a plane above each floor; floors of two storeys; no roo
   CHECK(found.floors.size() == 2);
 }
 
-TEST_CASE("a place without ceiling has its floor all the same") {
+TEST_CASE("a place without a ceiling still has its floor") {
   Scene s;
   add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
   const PreparedScene scene(std::move(s));
@@ -61,7 +63,7 @@ TEST_CASE("a place without ceiling has its floor all the same") {
   CHECK(find_surfaces(scene, {0, 1, 0}, "none", 0.75).surfaces.empty());
 }
 
-TEST_CASE("surfaces by name: tops of bodies, boards, rectangles; what is none is refused") {
+TEST_CASE("surfaces by name: tops of bodies, boards and rectangles; others are refused") {
   const PreparedScene scene(small_office());
   SurfaceRequest cabinet{"cabinet", "archive", "", 0.01, 0.1, {}, {}, {}};
   SurfaceRequest board{"", "board", "board", 0, -1, {0.5, 0, 1}, {0, 0, 1}, {2, 0, 0}};

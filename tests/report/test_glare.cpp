@@ -51,7 +51,9 @@ TEST_CASE("the position index is that of CIE 117's table") {
   CHECK(index_at(0, 0) == 1);
 }
 
-TEST_CASE("below the line of sight it is Iwata and Tokura's, and beyond the table nothing counts") {
+TEST_CASE(
+    "the position index below the line of sight is that of Iwata and Tokura; beyond the table "
+    "nothing counts") {
   CHECK(index_at(0, -0.5) == doctest::Approx(1.4));
   CHECK(index_at(0, -1) == doctest::Approx(2.2));
   CHECK(index_at(0.3, -0.4) == doctest::Approx(1.4));
@@ -62,7 +64,7 @@ TEST_CASE("below the line of sight it is Iwata and Tokura's, and beyond the tabl
   CHECK(index_at(0, 1.89) < 30);
 }
 
-TEST_CASE("one panel, by hand: 8 log10(.25 / Lb L² ω / p²)") {
+TEST_CASE("the UGR of one panel agrees with 8 log10(.25 / Lb L² ω / p²)") {
   const PreparedScene scene(panel_ahead(Rgb{5000}));
   const auto seen = seen_luminaires(scene, ahead, up, 0);
   REQUIRE(seen.size() == 1);
@@ -85,7 +87,8 @@ TEST_CASE("one panel, by hand: 8 log10(.25 / Lb L² ω / p²)") {
   CHECK_FALSE(seen[0].is_small);
 }
 
-TEST_CASE("what hides half of a panel takes half of its term; behind the eye it does not glare") {
+TEST_CASE(
+    "an object that hides half of a panel halves its term; a panel behind the eye does not glare") {
   Scene s = panel_ahead(Rgb{5000});
   const uint32_t black = add_diffuse(s, Rgb{0});
   add_quad(s, black, {Vec3{1.5f, 0, 0}, {1.5f, 9, 0}, {1.5f, 9, 4}, {1.5f, 0, 4}});
@@ -98,7 +101,7 @@ TEST_CASE("what hides half of a panel takes half of its term; behind the eye it 
   CHECK_FALSE(glare_of(ahead, {0, 0}, all).is_defined);
 }
 
-TEST_CASE("a small luminaire and a point glare as 200 I² / (r² p²)") {
+TEST_CASE("a small luminaire and a point have the glare term 200 I² / (r² p²)") {
   const double r2 = 10, side = 0.02, sigma = deg_from_rad(std::atan(1.0 / 3));
   const double p = std::exp(33.98e-3 * sigma + 21e-5 * sigma * sigma);
   const double candela = 1e6 * side * side;
@@ -125,7 +128,7 @@ TEST_CASE("a small luminaire and a point glare as 200 I² / (r² p²)") {
         doctest::Approx(200 * candela * candela / (r2 * p * p)).epsilon(1e-4));
 }
 
-TEST_CASE("lamps of one name that hang apart are luminaires of their own") {
+TEST_CASE("separate lamps of one name are separate luminaires") {
   Scene s;
   s.is_photometric = true;
   const uint32_t black = add_diffuse(s, Rgb{0});

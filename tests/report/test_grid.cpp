@@ -10,7 +10,7 @@
 
 using namespace troffer;
 
-TEST_CASE("cells are no larger than 0.2 · 5^(log10 d), and never than 10 m") {
+TEST_CASE("grid cells are no larger than 0.2 · 5^(log10 d) or 10 m") {
   CHECK(largest_cell(1) == doctest::Approx(0.2));
   CHECK(largest_cell(10) == doctest::Approx(1));
   CHECK(largest_cell(100) == doctest::Approx(5));
@@ -31,7 +31,8 @@ TEST_CASE("cells are no larger than 0.2 · 5^(log10 d), and never than 10 m") {
   CHECK(grid_shape(10, 10).columns == 10);
 }
 
-TEST_CASE("sides of cells have a ratio between .5 and 2, and d is the shorter side of long areas") {
+TEST_CASE(
+    "sides of grid cells have a ratio between .5 and 2, and d is the shorter side of long areas") {
   for (double w = 0.05; w < 300; w *= 1.31)
     for (double h = 0.05; h < 300; h *= 1.37) {
       const GridShape g = grid_shape(w, h), turned = grid_shape(h, w);
@@ -82,7 +83,7 @@ TEST_CASE("a rectangle of two triangles: its grid, off the border") {
   CHECK(g.points[1].position.x - g.points[0].position.x == doctest::Approx(3.2 / g.shape.columns));
 }
 
-TEST_CASE("an L has no points in its notch, and something tiny has one in it") {
+TEST_CASE("an L-shaped grid has no points in its notch, and a tiny area has one point") {
   const Vec3d n{0, 1, 0};
   const std::vector<std::array<Vec3d, 3>> l{{Vec3d{0, 0, 0}, {0, 0, 2}, {6, 0, 2}},
                                             {Vec3d{0, 0, 0}, {6, 0, 2}, {6, 0, 0}},
@@ -98,7 +99,7 @@ TEST_CASE("an L has no points in its notch, and something tiny has one in it") {
   CHECK(g.points[0].position.x + g.points[0].position.z < 1e-3);
 }
 
-TEST_CASE("mean, least and uniformity, with errors") {
+TEST_CASE("mean, minimum and uniformity, with errors") {
   const GridSummary s = summary_of({{400, 4}, {500, 6}, {600, 2}});
   CHECK(s.mean.value == doctest::Approx(500));
   CHECK(s.mean.error == doctest::Approx(4));
@@ -115,7 +116,7 @@ TEST_CASE("mean, least and uniformity, with errors") {
   CHECK(summary_of(std::vector<Figure>(10, {100, 0})).least_bias == 0);
 }
 
-TEST_CASE("isolines of a cone are circles, and close") {
+TEST_CASE("isolines of a cone are closed circles") {
   ValueGrid g{41, 41, {}};
   for (int r = 0; r < 41; ++r)
     for (int c = 0; c < 41; ++c) g.values.push_back(100 - std::hypot(c - 20.0, r - 20.0));

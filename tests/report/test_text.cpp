@@ -33,7 +33,7 @@ TEST_CASE("SHA-256 of FIPS 180-4's examples, and around the ends of blocks") {
         "ffe054fe7ae0cb6dc65c3af9b61d5209f439851db43d0ba5997337df154668eb");
 }
 
-TEST_CASE("names cannot leave the text they stand in") {
+TEST_CASE("names cannot break out of the surrounding markup") {
   CHECK(html_text("<script>alert(1)</script>") == "&lt;script&gt;alert(1)&lt;/script&gt;");
   CHECK(html_text("\"><img src=x onerror='a&b'>") ==
         "&quot;&gt;&lt;img src=x onerror=&#39;a&amp;b&#39;&gt;");
@@ -57,21 +57,21 @@ TEST_CASE("names cannot leave the text they stand in") {
   }
 }
 
-TEST_CASE("fields of tables are in quotes, and no formulas") {
+TEST_CASE("fields of tables are quoted and cannot be formulas") {
   CHECK(csv_field("desk") == "\"desk\"");
   CHECK(csv_field("a\"b,c\n") == "\"a\"\"b,c \"");
   CHECK(csv_field("=1+1") == "\"'=1+1\"");
   CHECK(csv_field("@SUM(A1)") == "\"'@SUM(A1)\"");
 }
 
-TEST_CASE("base64 as RFC 4648 has it") {
+TEST_CASE("base64 follows RFC 4648") {
   CHECK(base64(bytes_of("")).empty());
   CHECK(base64(bytes_of("f")) == "Zg==");
   CHECK(base64(bytes_of("fo")) == "Zm8=");
   CHECK(base64(bytes_of("foobar")) == "Zm9vYmFy");
 }
 
-TEST_CASE("numbers are rounded to where their errors have two digits") {
+TEST_CASE("numbers are rounded to two digits of their errors") {
   CHECK(with_error(512.345, 3.21) == "512.3 ± 3.2");
   CHECK(with_error(512.345, 32.1) == "512 ± 32");
   CHECK(with_error(0.61234, 0.0123) == "0.612 ± 0.012");
@@ -81,7 +81,7 @@ TEST_CASE("numbers are rounded to where their errors have two digits") {
   CHECK(short_number(0.1234) == "0.123");
 }
 
-TEST_CASE("scales: round values, and colours of rising lightness") {
+TEST_CASE("scales have round values and colours of rising lightness") {
   CHECK(round_values(1, 1000, 20, true) ==
         std::vector<double>{1, 2, 5, 10, 20, 50, 100, 200, 500, 1000});
   CHECK(round_values(180, 620, 5, false) == std::vector<double>{200, 300, 400, 500, 600});

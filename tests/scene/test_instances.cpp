@@ -8,7 +8,7 @@
 using namespace troffer;
 using namespace troffer::test;
 
-TEST_CASE("corners of instances are those of copies, bit by bit, their front outside") {
+TEST_CASE("corners of instances equal those of copies bit for bit, with the front outside") {
   const Scene scene = room_of_instances(places_in_room());
   const Scene copies = copied_out(scene);
   CHECK(triangle_count(scene) == triangle_count(copies));
@@ -38,7 +38,7 @@ TEST_CASE("corners of instances are those of copies, bit by bit, their front out
   CHECK_FALSE(is_mesh(scene, uint32_t(scene.meshes.size()) + 1));
 }
 
-TEST_CASE("transforms that rays do not survive are not for instances") {
+TEST_CASE("transforms that rays do not survive are not used for instances") {
   CHECK(is_instanceable(Affine()));
   CHECK(is_instanceable(Affine::rotate(1, {1, 2, 3}) * Affine::scale({1e-3, 5, 1e3})));
   CHECK(is_instanceable(Affine::scale({-1, 1, 1})));

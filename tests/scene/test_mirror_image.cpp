@@ -7,7 +7,7 @@
 using namespace troffer;
 using namespace troffer::test;
 
-TEST_CASE("patterns of alpha keep their operands in a mirror image") {
+TEST_CASE("alpha patterns keep their operands in a mirror image") {
   Scene scene;
   Texture operand;
   operand.value = Rgb{0.25f};

@@ -111,7 +111,7 @@ void check_both(const Scene& scene, const std::string& reason) {
 
 }  // namespace
 
-TEST_CASE("furniture on a floor shows up, whatever the proportions of a room") {
+TEST_CASE("furniture on a floor indicates up, whatever the proportions of a room") {
   for (const char* file : {"a.obj", "a.ply", "a.stl", "a.pbrt", "a.xml", "A.OBJ.gz"})
     for (const Vec3& size : {Vec3{10, 3, 2}, Vec3{4, 3, 8}, Vec3{3, 9, 3}, Vec3{5, 5, 5}}) {
       CAPTURE(file);
@@ -132,14 +132,14 @@ TEST_CASE("a cupboard that hangs on a wall does not outweigh what stands on the 
   check_both(b.scene, "by objects that stand on others");
 }
 
-TEST_CASE("a lamp in the ceiling of an empty corridor shows up") {
+TEST_CASE("a lamp in the ceiling of an empty corridor indicates up") {
   Builder b("a.obj");
   b.room({10, 3, 2});
   b.lamp(4, 2.99f, 0.7f);
   check_both(b.scene, "by a lamp that faces down");
 }
 
-TEST_CASE("cameras show up, level ones and tilted ones") {
+TEST_CASE("cameras indicate up, level and tilted ones") {
   for (const Vec3& forward : {Vec3{1, 0, 0.3f}, Vec3{1, -0.5f, 0.3f}, Vec3{0.2f, -1, 0.3f}}) {
     Builder b("a.pbrt");
     b.room({4, 7, 4});
@@ -148,7 +148,7 @@ TEST_CASE("cameras show up, level ones and tilted ones") {
   }
 }
 
-TEST_CASE("names of floors and ceilings show up") {
+TEST_CASE("names of floors and ceilings indicate up") {
   for (const char* name : {"floor", "Floor.001", "Boden", "officeFloor", "wood_floor_12"}) {
     Builder b("a.obj");
     b.room({10, 3, 2});
@@ -169,7 +169,7 @@ TEST_CASE("a floor lamp is no floor") {
   CHECK(decide_up(b.scene).basis == UpBasis::convention);
 }
 
-TEST_CASE("a ground with something on it shows up") {
+TEST_CASE("a ground with something on it indicates up") {
   Builder b("a.pbrt");
   b.level(0, -5, 5, -5, 5);
   b.box({0, 0, 0}, {2, 12, 2});
@@ -179,7 +179,7 @@ TEST_CASE("a ground with something on it shows up") {
   CHECK(decide_up(z_up(b.scene)).up == z);
 }
 
-TEST_CASE("a sky of the file's own shows up") {
+TEST_CASE("a sky of the file indicates up") {
   Builder b("a.xml");
   b.room({10, 3, 2});
   Light sky;
@@ -189,7 +189,7 @@ TEST_CASE("a sky of the file's own shows up") {
   check_both(b.scene, "by its sky");
 }
 
-TEST_CASE("an empty box says nothing, and that is said") {
+TEST_CASE("an empty box gives no hint, and the note says so") {
   Builder b("tower.obj");
   b.room({20, 20, 60});
   const UpDecision d = decide_up(b.scene);
@@ -204,7 +204,8 @@ TEST_CASE("an empty box says nothing, and that is said") {
         "(--up y if it stands on y)");
 }
 
-TEST_CASE("glTF and Radiance say which way is up; a scene that lies on its side is told of") {
+TEST_CASE(
+    "glTF and Radiance define which way is up; a scene that lies on its side causes a warning") {
   Builder b("a.gltf");
   b.room({6, 3, 5});
   b.desk(1, 2);
@@ -223,7 +224,7 @@ TEST_CASE("glTF and Radiance say which way is up; a scene that lies on its side 
   CHECK(decide_up(z_up(b.scene)).doubt == "");
 }
 
-TEST_CASE("hints that contradict each other leave a doubt") {
+TEST_CASE("contradicting hints leave a doubt") {
   Builder b("a.pbrt");
   b.room({6, 3, 5});
   b.level(0.001f, 0, 6, 0, 5, "floor");

@@ -6,7 +6,8 @@
 
 using namespace troffer;
 
-TEST_CASE("turns take up to y and keep lengths and hands; those of axes are exact") {
+TEST_CASE(
+    "rotations take up to y and keep lengths and handedness; rotations between axes are exact") {
   for (const Vec3 up : {Vec3{0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {3, -4, 12}}) {
     const auto turn = rotation_to_y(up);
     const Vec3d u = normalize(Vec3d(up));

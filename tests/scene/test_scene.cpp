@@ -39,7 +39,7 @@ Scene small() {
 
 }  // namespace
 
-TEST_CASE("triangles and bounds count everything") {
+TEST_CASE("triangle count and bounds include everything") {
   const Scene s = small();
   CHECK(triangle_count(s) == 4);
   const Box b = bounds(s);
@@ -55,7 +55,7 @@ TEST_CASE("triangles and bounds count everything") {
   CHECK(bounds(loose).upper.x == 7);
 }
 
-TEST_CASE("emitters are kept by name, all of a name together") {
+TEST_CASE("emitters are selected by name, all of one name together") {
   const Scene lamps = with_only_lights(small(), {"lamp"});
   REQUIRE(lamps.lights.size() == 2);
   CHECK(lamps.lights[1].radiance == Rgb{2});
@@ -75,7 +75,7 @@ TEST_CASE("emitters are kept by name, all of a name together") {
   CHECK(with_only_lights(small(), {}).lights.empty());
 }
 
-TEST_CASE("an unknown light is a usage error that names it") {
+TEST_CASE("an unknown light is a usage error with its name") {
   try {
     with_only_lights(small(), {"lamp", "chandelier"});
     FAIL("no error");

@@ -27,7 +27,7 @@ float grey(const Texture& t, float u, float v) {
 
 }  // namespace
 
-TEST_CASE("texel centres return texels, between them values are bilinear") {
+TEST_CASE("texel centres return texels; between them values are bilinear") {
   const Texture t = small();
   for (int y = 0; y < 2; ++y)
     for (int x = 0; x < 3; ++x)

@@ -57,7 +57,9 @@ Texture stripes() {
 
 }  // namespace
 
-TEST_CASE("every level keeps the mean, in linear light, and all together add a third") {
+TEST_CASE(
+    "every level keeps the mean in linear light, and all levels together add a third of the "
+    "memory") {
   for (const auto& [w, h] : {std::pair{256, 256}, {255, 131}, {7, 300}, {1, 64}, {3, 2}})
     for (const int channels : {1, 3, 4})
       for (const bool is_bytes : {true, false}) {
@@ -91,7 +93,7 @@ TEST_CASE("a footprint smaller than a texel is a point, a large one has the mean
   for (size_t c = 0; c < 3; ++c) CHECK(std::abs(all[c] - mean[c]) < 0.02f);
 }
 
-TEST_CASE("a long footprint is not wider than it is") {
+TEST_CASE("a long footprint does not blur across its narrow side") {
   const std::vector<Texture> textures{stripes()};
   const float texel = 1.0f / 64;
   for (const float x : {20.5f, 21.5f}) {
@@ -106,7 +108,7 @@ TEST_CASE("a long footprint is not wider than it is") {
   }
 }
 
-TEST_CASE("between sizes the mean changes steadily, under every way of the image") {
+TEST_CASE("the mean of a transformed image changes continuously between footprint sizes") {
   Texture t = stripes();
   t.uv_scale = {2, -3};
   t.uv_rotation_rad = 0.7f;

@@ -59,7 +59,7 @@ TEST_CASE("checks in the plane and in space, and their mean over a footprint") {
   CHECK(std::abs(grey(t, at({0.1f, 0.1f, 0.1f}, 200)) - 0.5f) < 1e-3f);
 }
 
-TEST_CASE("a mix takes its amount from a texture, dots cover their share") {
+TEST_CASE("a mix takes its amount from a texture; dots cover their share") {
   Texture amount;
   amount.kind = TextureKind::constant;
   amount.value = Rgb{0.25f};
@@ -80,7 +80,7 @@ TEST_CASE("a mix takes its amount from a texture, dots cover their share") {
   CHECK(sum / (n * n) == doctest::Approx(0.5 * pi * 0.35 * 0.35).epsilon(0.05));
 }
 
-TEST_CASE("noise: of no mean, continuous, and nothing where the footprint is wide") {
+TEST_CASE("noise has zero mean, is continuous, and vanishes for wide footprints") {
   Texture fbm = pattern(TextureKind::fbm, TextureMapping::solid);
   Texture wrinkled = pattern(TextureKind::wrinkled, TextureMapping::solid);
   Random random(7);

@@ -41,7 +41,7 @@ std::vector<double> values_of(const T& t) {
 
 }  // namespace
 
-TEST_CASE("any change of a material that changes what it scatters changes its values") {
+TEST_CASE("any change of a material that affects scattering changes its values") {
   const Material plain;
   const std::vector<std::function<void(Material&)>> changes{
       [](Material& m) { m.kind = MaterialKind::conductor; },
@@ -72,7 +72,7 @@ TEST_CASE("any change of a material that changes what it scatters changes its va
   }
 }
 
-TEST_CASE("a material is textured where one of its inputs is") {
+TEST_CASE("a material is textured if one of its inputs is") {
   Material m;
   CHECK_FALSE(has_textured_input(m));
   m.alpha.texture = m.normal_texture = 0;  // masks and bumps are not inputs of scattering
@@ -89,7 +89,7 @@ TEST_CASE("a material is textured where one of its inputs is") {
   }
 }
 
-TEST_CASE("any change of a light that changes what it sends changes its values") {
+TEST_CASE("any change of a light that affects its emission changes its values") {
   for (const LightKind kind : {LightKind::polygon, LightKind::spot}) {
     Light plain;
     plain.kind = kind;

@@ -40,7 +40,7 @@ double exact(const LightPrimitive& p, const Receiver& at, bool both_sides) {
 
 }  // namespace
 
-TEST_CASE("probabilities add up to one or, where nothing can shine, to zero") {
+TEST_CASE("probabilities add up to one or, if no source can shine, to zero") {
   int all_ones = 0;
   for (uint64_t seed = 0; seed < 60; ++seed) {
     const Scene scene = random_lights(seed, 1 + int(seed * 7 % 50));
@@ -83,7 +83,7 @@ TEST_CASE("choose and pmf agree on the primitive chosen") {
   }
 }
 
-TEST_CASE("choose() draws with the frequencies that pmf() promises, and leaves a uniform number") {
+TEST_CASE("choose() has the frequencies of pmf() and leaves a uniform number") {
   constexpr int scenes = 24, draws = 40000, bins = 32;
   const double significance = sidak(1e-4, 2 * scenes);
   for (uint64_t seed = 0; seed < scenes; ++seed) {
@@ -149,7 +149,7 @@ TEST_CASE("no source that shines on a point has probability zero") {
   CHECK(lit > 50000);
 }
 
-TEST_CASE("a primitive beside one that is 1e12 times as strong still has its chance") {
+TEST_CASE("a primitive beside one 1e12 times as strong keeps its probability") {
   Scene s;
   const uint32_t m = add_diffuse(s, Rgb{0});
   for (const float x : {-3.0f, 3.0f}) {
@@ -214,7 +214,7 @@ TEST_CASE("no source, one source, black sources") {
   CHECK(tree.pmf({0, 0, 0}, {0, 0, 1}, false, 0) == 1);
 }
 
-TEST_CASE("sources at one place share alike") {
+TEST_CASE("sources at one place have equal shares") {
   Scene s;
   const uint32_t m = add_diffuse(s, Rgb{0});
   constexpr uint32_t n = 100;
@@ -229,7 +229,7 @@ TEST_CASE("sources at one place share alike") {
         doctest::Approx(1).epsilon(1e-4));
 }
 
-TEST_CASE("a tree over one emitter's primitives alone") {
+TEST_CASE("a tree over the primitives of a single emitter") {
   for (uint64_t seed = 0; seed < 20; ++seed) {
     const Scene scene = random_lights(seed + 700, 20);
     const LightPrimitives lights(scene);
@@ -257,7 +257,7 @@ TEST_CASE("a tree over one emitter's primitives alone") {
   }
 }
 
-TEST_CASE("ten thousand primitives: built within a second, all within reach") {
+TEST_CASE("a tree of ten thousand primitives is built quickly, and all are reachable") {
   // In a row by powers of two, which makes the most unbalanced splits, and scattered at random.
   for (const bool is_strung : {false, true}) {
     Scene s;
@@ -289,7 +289,7 @@ TEST_CASE("ten thousand primitives: built within a second, all within reach") {
   }
 }
 
-TEST_CASE("what is near: all within reach, none whose sphere is not, and no more than asked") {
+TEST_CASE("nearby primitives: all within reach, none beyond, and no more than requested") {
   size_t found = 0;
   for (uint64_t seed = 0; seed < 40; ++seed) {
     const Scene scene = random_lights(seed, 1 + int(seed * 7 % 50));
@@ -319,7 +319,7 @@ TEST_CASE("what is near: all within reach, none whose sphere is not, and no more
   CHECK(found > 1000);
 }
 
-TEST_CASE("choosing for many points is choosing for each") {
+TEST_CASE("choosing for many points equals choosing for each") {
   Random random(23);
   for (const size_t sources : {1u, 3u, 40u}) {
     Scene s;
@@ -352,7 +352,7 @@ TEST_CASE("choosing for many points is choosing for each") {
   }
 }
 
-TEST_CASE("choosing by increasing numbers for one point is choosing by each") {
+TEST_CASE("choosing by increasing numbers for one point equals choosing by each") {
   Random random(29);
   for (const size_t sources : {1u, 3u, 40u, 700u}) {
     Scene s;

@@ -35,7 +35,7 @@ double sum_of_pmf(const LightTree& tree, const LightPrimitives& lights, const Re
 
 }  // namespace
 
-TEST_CASE("with lights at infinity probabilities add up to one, and choose() has those of pmf()") {
+TEST_CASE("with lights at infinity probabilities add up to one, and choose() follows pmf()") {
   for (const int placed : {0, 5, 40}) {
     const Scene scene = mixed_lights(uint64_t(placed), placed);
     const LightPrimitives lights(scene);
@@ -79,7 +79,7 @@ TEST_CASE("with lights at infinity probabilities add up to one, and choose() has
   }
 }
 
-TEST_CASE("frequencies of lights at infinity are as promised, and many choose as one does") {
+TEST_CASE("lights at infinity are chosen with their probabilities, for many points as for one") {
   const Scene scene = mixed_lights(7, 12);
   const LightPrimitives lights(scene);
   const LightTree tree(lights);

@@ -65,7 +65,7 @@ Made made_over_seeds(const FlatSource& source, const std::vector<Quad>& facets, 
 
 }  // namespace
 
-TEST_CASE("cells: sky panels of half a kilometre and two, seen past a table") {
+TEST_CASE("source cells: sky panels of 500 m and 2 km, seen past a table") {
   for (const double side : {500.0, 2000.0}) {
     for (const float table : {2.0f, 16.0f, 40.0f}) {  // 40 m leaves a fiftieth of the light
       CAPTURE(side);
@@ -78,7 +78,7 @@ TEST_CASE("cells: sky panels of half a kilometre and two, seen past a table") {
   }
 }
 
-TEST_CASE("cells: close to a disk") {
+TEST_CASE("source cells: receivers close to a disk") {
   const Made made =
       made_over_seeds(level_panel(4, 0.25, true),
                       {square(0.05f, 0.02f, 0.1f, 0.2f), square(0.9f, 0, 0.2f, 0.4f)}, 60);
@@ -86,7 +86,7 @@ TEST_CASE("cells: close to a disk") {
   CHECK(made.rms < 0.004);
 }
 
-TEST_CASE("cells: quarters of a disk cover it, and light varies little over each") {
+TEST_CASE("source cells: quarters of a disk cover it, and light varies little over each") {
   const FlatSource source = level_panel(4, 0.3, true);
   OneSource one(receivers_on_floor(4, 0.01f), source);
   std::vector<FlatCell> cells;
@@ -102,7 +102,7 @@ TEST_CASE("cells: quarters of a disk cover it, and light varies little over each
     CHECK(sum[i] == doctest::Approx(double(one.unoccluded[i])).epsilon(1e-4));
 }
 
-TEST_CASE("a facet that rounding lets cross the source's plane four times is kept whole") {
+TEST_CASE("a facet whose edges cross the source's plane four times by rounding is kept whole") {
   const FlatSource source = ceiling_source();
   const MaskFrame frame(source.plane, coarse_lattice, false, {0, 0, 0});
   FacetList list;

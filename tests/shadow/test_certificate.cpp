@@ -51,7 +51,7 @@ TEST_CASE("lit and dark certificates are never contradicted by a ray") {
   CHECK(dark > 3000);
 }
 
-TEST_CASE("a shaft holds every segment between its ends") {
+TEST_CASE("a shaft contains every segment between its ends") {
   size_t tested = 0, planes = 0;
   for (uint64_t seed = 0; seed < 4000; ++seed) {
     Random r(seed + 1000000);
@@ -82,7 +82,7 @@ TEST_CASE("a shaft holds every segment between its ends") {
   CHECK(planes > 4000 * 6);
 }
 
-TEST_CASE("a shaft leaves out what is beside, behind and below") {
+TEST_CASE("a shaft excludes facets beside, behind and below") {
   const FlatSource source{{{-1, -1, 2}, {2, 0, 0}, {0, 2, 0}, {0, 0, -1}}, {}};
   const std::vector<Vec3> origins{{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, {0.1f, 0.1f, 0}};
   const std::vector<Vec3> normals(4, Vec3{0, 0, 1});
@@ -104,7 +104,7 @@ TEST_CASE("a shaft leaves out what is beside, behind and below") {
   CHECK(is_inside({0, 0, 1e-4f}));
 }
 
-TEST_CASE("classification: clear cases are settled, doubtful ones are not") {
+TEST_CASE("classification: clear cases are decided, doubtful ones are not") {
   const Parallelogram source{{-1, -1, 2}, {2, 0, 0}, {0, 2, 0}, {0, 0, -1}};
   const MaskFrame frame(source, coarse_lattice, false, {0, 0, 0});
   std::vector<MaskPoint> receivers;

@@ -68,7 +68,7 @@ TEST_CASE("visible shares against a grid of rays on random scenes") {
   MESSAGE("rms error ", std::sqrt(error2 / pairs), ", told ", std::sqrt(predicted2 / pairs));
 }
 
-TEST_CASE("unbiased over seeds, whether masks are complete or rays fill in") {
+TEST_CASE("visible shares are unbiased over seeds, with complete masks and with rays") {
   const FlatSource source{{{-0.8, -0.7, 2}, {1.5, 0, 0}, {0.2, 1.4, 0}, {0, 0, -1}}, {}};
   BruteForceScene scene;
   scene.facets = {parallelogram_facet({0.1f, -0.4f, 1.1f}, {0.7f, 0.1f, 0.05f}, {-0.1f, 0.6f, 0}),
@@ -107,7 +107,7 @@ TEST_CASE("unbiased over seeds, whether masks are complete or rays fill in") {
   }
 }
 
-TEST_CASE("what nothing hides is exact and costs no ray") {
+TEST_CASE("unoccluded light is exact and needs no ray") {
   BruteForceScene scene;
   scene.facets = {parallelogram_facet({5, 5, 1}, {1, 0, 0}, {0, 1, 0})};
   Random r(3);
@@ -182,7 +182,7 @@ TEST_CASE("thin occluders: none missed, mean error within 0.3 % of the unocclude
   CHECK(mean_error(speck) < 0.003);
 }
 
-TEST_CASE("of closed surfaces, outside of which both ends lie, the front is enough") {
+TEST_CASE("for segments outside of closed surfaces the front facets are enough") {
   size_t compared = 0, hidden = 0;
   for (uint64_t seed = 0; seed < 200; ++seed) {
     Random r(seed + 5);
@@ -233,7 +233,7 @@ TEST_CASE("of closed surfaces, outside of which both ends lie, the front is enou
   CHECK(hidden > 5000);
 }
 
-TEST_CASE("a receiver whose own horizon differs from its normal loses what is behind both") {
+TEST_CASE("a receiver with a geometric and a shading normal loses the light behind either") {
   const FlatSource source{{{0.2, -0.5, 0.1}, {0, 1, 0}, {0, 0, 1.2}, {-1, 0, 0}}, {}};
   BruteForceScene scene;
   scene.facets = {parallelogram_facet({0.1f, -0.1f, 0.2f}, {0, 0.2f, 0}, {0, 0, 0.3f})};
@@ -267,7 +267,9 @@ TEST_CASE("a receiver whose own horizon differs from its normal loses what is be
   CHECK(visible == doctest::Approx(seen / all).epsilon(2e-3));
 }
 
-TEST_CASE("near a large source: cells keep shares exact where weights vary by orders") {
+TEST_CASE(
+    "near a large source: source cells keep shares exact where weights vary by orders of "
+    "magnitude") {
   const FlatSource source{{{-2, -2, 0.15}, {4, 0, 0}, {0, 4, 0}, {0, 0, -1}}, {}};
   BruteForceScene scene;
   scene.facets = {parallelogram_facet({0.02f, -0.1f, 0.05f}, {0.1f, 0.02f, 0.01f}, {0, 0.2f, 0}),
@@ -290,7 +292,7 @@ TEST_CASE("near a large source: cells keep shares exact where weights vary by or
   CHECK(std::sqrt(error2) < 0.004);
 }
 
-TEST_CASE("disks: exact where open, masked by a circle of samples") {
+TEST_CASE("disks: exact where unoccluded, else masked by a circle of samples") {
   FlatSource source{{{-0.5, -0.5, 2}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}}, {}, true};
   BruteForceScene scene;
   scene.facets = {parallelogram_facet({0, -3, 1}, {3, 0, 0}, {0, 6, 0})};
@@ -313,7 +315,7 @@ TEST_CASE("disks: exact where open, masked by a circle of samples") {
   CHECK(half == doctest::Approx(0.5).epsilon(2e-3));
 }
 
-TEST_CASE("a disk that a receiver's own horizon cuts sends what stands above it") {
+TEST_CASE("a disk cut by a receiver's horizon sends the light of the part above it") {
   const FlatSource source{{{0.2, -0.5, -0.3}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}}, {}, true};
   ShadowReceiver x = receiver({0, 0, 0}, normalize(Vec3{0.4f, 0, 1}), 3);
   x.normal = normalize(Vec3{-0.3f, 0.1f, 1});

@@ -46,7 +46,7 @@ SphereSource random_sphere(Random& r) {
 
 }  // namespace
 
-TEST_CASE("spheres: exact where nothing hides them, shares by the disk that they span") {
+TEST_CASE("spheres: exact where unoccluded, else shares by the disk that they span") {
   double error2 = 0, mean = 0, predicted2 = 0;
   int pairs = 0, lit = 0, mixed = 0;
   for (uint64_t seed = 0; seed < 200; ++seed) {
@@ -89,7 +89,7 @@ TEST_CASE("spheres: exact where nothing hides them, shares by the disk that they
   CHECK(predicted2 < 9 * error2);
 }
 
-TEST_CASE("a shaft to a sphere holds every segment to what receivers see of it") {
+TEST_CASE("a shaft to a sphere contains every segment to its visible part") {
   size_t tested = 0;
   for (uint64_t seed = 0; seed < 4000; ++seed) {
     Random r(seed + 2000000);
@@ -118,7 +118,9 @@ TEST_CASE("a shaft to a sphere holds every segment to what receivers see of it")
   CHECK(tested > 20000);
 }
 
-TEST_CASE("a wide cluster sees past the plane through a sphere's centre: a plate there hides") {
+TEST_CASE(
+    "a wide cluster sees past the plane through a sphere's centre: a plate there counts as an "
+    "occluder") {
   const SphereSource source{{0, 0, 2.5}, 0.1};
   for (const float size : {0.3f, 1.0f, 2.5f, 6.0f}) {
     BruteForceScene scene;  // a plate 5 mm in front of the centre
@@ -141,7 +143,7 @@ TEST_CASE("a wide cluster sees past the plane through a sphere's centre: a plate
   }
 }
 
-TEST_CASE("a sphere is not hidden by what is stuck into it") {
+TEST_CASE("a sphere is not hidden by facets inside it") {
   const SphereSource source{{0, 0, 2}, 0.5};
   BruteForceScene scene;
   // a socket: a plate through the sphere's middle, as wide as the sphere
@@ -239,7 +241,7 @@ class Constant final : public ShadowIntegrand {
 
 }  // namespace
 
-TEST_CASE("a slit that most masks miss counts in an integral with its width, not more") {
+TEST_CASE("a slit that most masks miss counts in an integral with its width") {
   const FlatSource source{{{-0.5, -0.5, 2}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}}, {}};
   constexpr double edge = 0.497;  // of the plate's shadow; the slit is narrower than a sample
   const auto plate_edge = float(edge * 1.9 / 2);

@@ -20,7 +20,7 @@ int count(const MaskRows& rows) {
 
 }  // namespace
 
-TEST_CASE("the square holds a² + b² samples whatever the shift") {
+TEST_CASE("the square contains a² + b² samples for any shift") {
   const Parallelogram source{{-1, -1, 2}, {2, 0, 0}, {0.3, 2, 0}, {0, 0, -1}};
   Random r(1);
   for (const MaskLattice& lattice : {coarse_lattice, fine_lattice}) {
@@ -34,7 +34,7 @@ TEST_CASE("the square holds a² + b² samples whatever the shift") {
   }
 }
 
-TEST_CASE("samples project evenly on both sides of the source") {
+TEST_CASE("samples project uniformly on both sides of the source") {
   const Parallelogram source{{0, 0, 2}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
   const MaskFrame frame(source, coarse_lattice, false, {0, 0, 0});
   const Vec2 shift{0.37f, 0.81f};
@@ -111,7 +111,7 @@ TEST_CASE("masks agree with rays, sample by sample, and on all instruction sets"
   CHECK(differ == 0);
 }
 
-TEST_CASE("facets that share edges leave no crack and overlap nowhere") {
+TEST_CASE("facets that share edges leave no crack and do not overlap") {
   const Parallelogram source{{-1, -1, 2}, {2, 0, 0}, {0, 2, 0}, {0, 0, -1}};
   Random r(5);
   for (int trial = 0; trial < 200; ++trial) {
@@ -151,7 +151,7 @@ TEST_CASE("facets that share edges leave no crack and overlap nowhere") {
   }
 }
 
-TEST_CASE("small facets, of which many are looked at together, hide what each hides alone") {
+TEST_CASE("small facets that are tested together hide what each hides alone") {
   const Parallelogram source{{-1, -1, 2}, {2, 0, 0}, {0, 2, 0}, {0, 0, -1}};
   Random r(9);
   size_t hidden = 0, small = 0;
@@ -221,7 +221,7 @@ TEST_CASE("a quadrilateral hides what its two triangles hide") {
   }
 }
 
-TEST_CASE("only the front of a facet hides when asked to") {
+TEST_CASE("only the front of a facet occludes if requested") {
   const Parallelogram source{{-1, -1, 2}, {2, 0, 0}, {0, 2, 0}, {0, 0, -1}};
   const Quad up{Vec3{-9, -9, 1}, {9, -9, 1}, {9, 9, 1}, {-9, 9, 1}};    // front above
   const Quad down{Vec3{-9, -9, 1}, {-9, 9, 1}, {9, 9, 1}, {9, -9, 1}};  // front below
@@ -246,7 +246,7 @@ TEST_CASE("only the front of a facet hides when asked to") {
   }
 }
 
-TEST_CASE("irradiance of many receivers equals the single one's") {
+TEST_CASE("irradiance of many receivers equals that of single ones") {
   Random r(11);
   for (int trial = 0; trial < 300; ++trial) {
     const FlatSource source = random_source(r);

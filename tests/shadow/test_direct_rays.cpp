@@ -104,7 +104,7 @@ double share_by_brute_force(const FlatSource& source, const BruteForceScene& sce
 
 }  // namespace
 
-TEST_CASE("rays straight to a source: unbiased, and better than as many independent ones") {
+TEST_CASE("direct rays: unbiased, and better than as many independent ones") {
   FlatSource triangle = ceiling_source();
   triangle.outline = {{0, 0}, {1, 0}, {0, 1}};
   FlatSource disk = ceiling_source();
@@ -132,7 +132,7 @@ TEST_CASE("rays straight to a source: unbiased, and better than as many independ
 
 // All receivers share one estimate of the open share (here one half), but the mean of each must be
 // right. Where everything is hidden the mean is 0, so about half of the answers are negative.
-TEST_CASE("rays straight to a source: no bias where little or nothing is open") {
+TEST_CASE("direct rays: no bias where little or nothing is open") {
   constexpr int seeds = 1500, count = 16;
   const FlatSource source = ceiling_source();
   BruteForceScene scene;
@@ -179,8 +179,7 @@ TEST_CASE("rays straight to a source: no bias where little or nothing is open") 
   CHECK(partly >= 3);
 }
 
-TEST_CASE(
-    "rays straight to a source: where nothing hides it, what is learnt takes the noise away") {
+TEST_CASE("direct rays: in the open, what is learnt removes the noise") {
   const FlatSource source = ceiling_source();
   BruteForceScene scene;
   scene.facets = plates(8, 5, 0.0001f, 1.2f);  // almost everything is open
@@ -194,7 +193,7 @@ TEST_CASE(
     CHECK(double(a.visible) == doctest::Approx(1).epsilon(2e-2));
 }
 
-TEST_CASE("rays straight to a source: as many for a whole batch, by its error and its share") {
+TEST_CASE("direct rays: the same number for a whole batch, by its error and share") {
   OneSource one(receivers_on_floor(8, 0.01f));
   BruteForceScene scene;
   scene.facets = plates(24, 0.4f, 0.5f, 1);
@@ -227,7 +226,7 @@ TEST_CASE("rays straight to a source: as many for a whole batch, by its error an
   CHECK(rays_at(0.1f, 1000) == doctest::Approx(25).epsilon(1e-5));
 }
 
-TEST_CASE("rays straight to a source: where clutter leaves much open nothing else is tried") {
+TEST_CASE("direct rays: where clutter leaves much open, nothing else is tried") {
   OneSource one(receivers_on_floor(12, 0.01f));
   BruteForceScene scene;
   const auto gathers_behind = [&](const std::vector<Quad>& facets) {

@@ -53,7 +53,7 @@ Errors errors_of(const MaskLattice& lattice, const Vec3& normal,
 }  // namespace
 
 // A receiver that sees the source at a grazing angle gets only a sliver of it, with few samples.
-TEST_CASE("masks: the error that is told is the error that is made, behind whatever") {
+TEST_CASE("masks: the estimated error is the actual error, behind random occluders") {
   const auto check = [](const MaskLattice& lattice, const Vec3& normal, double least) {
     const auto is_told = [&](const char* name, const auto& make) {
       const Errors e = errors_of(lattice, normal, make);
@@ -81,7 +81,7 @@ TEST_CASE("masks: the error that is told is the error that is made, behind whate
 
 // Along a side of the source all samples have different positions, so parallel edges err far less
 // than others.
-TEST_CASE("masks: the error that is told is the error that is made, behind blinds") {
+TEST_CASE("masks: the estimated error is the actual error, behind blinds") {
   const auto check = [](const MaskLattice& lattice, const Vec3& normal) {
     const auto is_told = [&](const char* name, const auto& make, double most = 2) {
       const Errors e = errors_of(lattice, normal, make);

@@ -84,7 +84,7 @@ TEST_CASE("masks keep the asked error of the light that arrives through a hole")
     }
 }
 
-TEST_CASE("masks: what is far below the floor may err by more, and costs less") {
+TEST_CASE("masks: light far below the floor may have a larger error and costs less") {
   const Made strict = made_through_hole(0.1f, 0.003f, 40);
   const float floor = 20 * float(strict.light);
   const Made loose = made_through_hole(0.1f, 0.003f, 40, floor);
@@ -96,8 +96,7 @@ TEST_CASE("masks: what is far below the floor may err by more, and costs less") 
   CHECK(same.masks == strict.masks);
 }
 
-TEST_CASE(
-    "masks: fewer cells than would cost more than they are worth, and none where all is open") {
+TEST_CASE("masks: no more source cells than pay off, and none where all is open") {
   OneSource one(receivers_on_floor(8, 0.01f));
   one.options.mask_error = 0.001f;
   const FlatCell whole = visible_part(one.source, one.cluster.hull);
@@ -126,7 +125,7 @@ TEST_CASE(
   CHECK(cells_within(1e9) == 1);
 }
 
-TEST_CASE("masks: what a cell's list leaves out hides nothing of the cell") {
+TEST_CASE("masks: facets that a source cell's list leaves out do not hide the cell") {
   Random random(11);
   size_t all = 0, kept = 0, segments = 0;
   for (int scene = 0; scene < 300; ++scene) {

@@ -60,7 +60,7 @@ Errors errors_of(float error, const std::function<std::vector<Quad>(Random&)>& m
 
 }  // namespace
 
-TEST_CASE("rays straight to a source: what is told is what is made, behind whatever") {
+TEST_CASE("direct rays: the estimated error is the actual error, behind random occluders") {
   for (const float error : {0.09f, 0.05f, 0.028f}) {
     const auto is_told = [&](const char* name, const auto& make) {
       const Errors e = errors_of(error, make);

@@ -26,7 +26,7 @@ void queue_open(OneSource& one, float light, uint32_t passes = 1) {
 
 }  // namespace
 
-TEST_CASE("rays: numbers keep the bound, in proportion to what a pair could be wrong by") {
+TEST_CASE("residual rays: numbers keep the bound, in proportion to the possible error of a pair") {
   OneSource one(receivers_on_floor(1, 1));
   queue_open(one, 0.2f);
   queue_open(one, 0.1f);
@@ -58,7 +58,7 @@ TEST_CASE("rays: numbers keep the bound, in proportion to what a pair could be w
   CHECK(plan.groups[1].count == uint32_t(std::ceil(wanted - 1e-3)));
 }
 
-TEST_CASE("rays: what is met in the way is noted, what lies in the source's plane hides nothing") {
+TEST_CASE("residual rays: occluders are recorded, facets in the source's plane hide nothing") {
   for (const bool is_over_budget : {false, true}) {
     OneSource one(receivers_on_floor(1, 1));
     if (is_over_budget) one.found.note_over_budget({}, 1);
@@ -84,7 +84,7 @@ TEST_CASE("rays: what is met in the way is noted, what lies in the source's plan
   }
 }
 
-TEST_CASE("rays: sums of light, of values, and of masks that share a pair") {
+TEST_CASE("residual rays: sums of light, of values, and of masks that share a pair") {
   OneSource one(receivers_on_floor(1, 1));
   BruteForceScene scene;
   scene.facets = {parallelogram_facet({0, -4, 1}, {4, 0, 0}, {0, 8, 0})};
@@ -116,7 +116,7 @@ TEST_CASE("rays: sums of light, of values, and of masks that share a pair") {
   CHECK(v.rays == answers[0].rays);
 }
 
-TEST_CASE("sums over cells become an answer; a light too weak to square is no NaN") {
+TEST_CASE("sums over source cells become an answer; a light too weak to square gives no NaN") {
   SourceVisibility a;
   CellSum sum;
   set_answer(sum, 0.3f, a);

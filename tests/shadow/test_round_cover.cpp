@@ -100,7 +100,7 @@ CoverageMask covered(const MaskFrame& frame, const RoundList& round, const Vec3d
 
 }  // namespace
 
-TEST_CASE("spheres and disks before flat sources: each sample as by its ray") {
+TEST_CASE("spheres and disks in front of flat sources: each sample agrees with its ray") {
   Random r(1);
   Tally tally;
   for (int i = 0; i < 4000; ++i) {
@@ -123,7 +123,7 @@ TEST_CASE("spheres and disks before flat sources: each sample as by its ray") {
   CHECK(tally.wrong == 0);
 }
 
-TEST_CASE("what enters a round source hides what of it lies outside") {
+TEST_CASE("a body that enters a round source hides with its part outside") {
   Random r(2);
   Tally tally;
   for (int i = 0; i < 4000; ++i) {

@@ -133,7 +133,7 @@ TEST_CASE("round panels are few sources") {
   CHECK(check_sources(scene_with(fan_about_centre(64, 0.5), place), 1) <= 12);
 }
 
-TEST_CASE("polygons with many corners are cut, disks stay whole") {
+TEST_CASE("polygons with many corners are divided, disks stay whole") {
   Random r(2);
   for (const uint32_t n : {4u, 11u, 12u, 40u, 64u}) {
     Scene s;
@@ -165,7 +165,7 @@ TEST_CASE("polygons with many corners are cut, disks stay whole") {
   CHECK(check_sources(disk, 3) == 1);
 }
 
-TEST_CASE("curved, round and textured emitters") {
+TEST_CASE("curved, round and textured emitters become sources") {
   // an octahedron: eight planes
   Scene s;
   add_diffuse(s, Rgb{0.5f});

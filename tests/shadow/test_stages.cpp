@@ -32,7 +32,7 @@ std::vector<Quad> crumbs(int n, float spacing) {
 
 }  // namespace
 
-TEST_CASE("cluster: its body holds all receivers, of a part no more than it needs") {
+TEST_CASE("cluster: its body contains all receivers, and for a part no more than needed") {
   for (uint64_t seed = 0; seed < 200; ++seed) {
     Random r(seed + 77);
     const std::vector<ShadowReceiver> receivers = random_receivers(r, 33);
@@ -58,7 +58,7 @@ TEST_CASE("cluster: its body holds all receivers, of a part no more than it need
   }
 }
 
-TEST_CASE("cluster: halves do not depend on the order, and are apart along the longest axis") {
+TEST_CASE("cluster: halves do not depend on the order and are separated along the longest axis") {
   const std::vector<ShadowReceiver> receivers = receivers_on_floor(6, 0.1f);
   std::vector<ShadowReceiver> longer = receivers;
   for (ShadowReceiver& r : longer) r.origin.x *= 3;
@@ -77,7 +77,7 @@ TEST_CASE("cluster: halves do not depend on the order, and are apart along the l
   for (size_t i = 0; i < 36; ++i) CHECK((longer[a[i]].origin.x < 0.8f) == (i < half));
 }
 
-TEST_CASE("cluster: unoccluded light of all shapes is the closed form") {
+TEST_CASE("cluster: unoccluded light of all shapes agrees with the closed form") {
   Random r(6);
   for (int k = 0; k < 50; ++k) {
     const std::vector<ShadowReceiver> receivers = random_receivers(r, 5);
@@ -100,7 +100,7 @@ TEST_CASE("cluster: unoccluded light of all shapes is the closed form") {
   }
 }
 
-TEST_CASE("gathering: a short list is one part, with what stands between and nothing else") {
+TEST_CASE("gathering: a short list is one part with exactly the facets in between") {
   OneSource one(receivers_on_floor(8, 0.02f));
   BruteForceScene scene;
   scene.facets = {plate(-0.1f, 0.1f, -0.1f, 0.1f, 1), plate(3, 4, 3, 4, 1),
@@ -146,7 +146,8 @@ TEST_CASE("gathering: too long lists divide receivers and source; each pair stay
   }
 }
 
-TEST_CASE("gathering: hopeless lists are cut, keep what rays have met, and are remembered") {
+TEST_CASE(
+    "gathering: lists over budget are cut, keep the facets that rays hit, and are remembered") {
   OneSource one(receivers_on_floor(8, 0.01f));
   BruteForceScene scene;
   scene.facets = crumbs(20, 0.03f);
@@ -173,7 +174,7 @@ TEST_CASE("gathering: hopeless lists are cut, keep what rays have met, and are r
   CHECK(one.counters.gathers == 1);
 }
 
-TEST_CASE("gathering: next to a sphere there is no list, and receivers are halved") {
+TEST_CASE("gathering: close to a sphere there is no list, and receivers are halved") {
   OneSource one(receivers_on_floor(8, 0.2f));
   const SphereSource sphere{{0.7, 0.7, 0.5}, 0.4};
   SourceTask task = one.task();
@@ -195,7 +196,7 @@ TEST_CASE("gathering: next to a sphere there is no list, and receivers are halve
   CHECK_FALSE(one.found.is_over_budget());
 }
 
-TEST_CASE("a rim is what rises out of the source's slab within its outline") {
+TEST_CASE("a rim is the part that rises out of the source's slab within its outline") {
   const FlatSource source = ceiling_source();
   BruteForceScene scene;
   scene.facets = {plate(-0.5f, 0.5f, -0.5f, 0.5f, 2), plate(0, 1, 0, 1, 1)};
@@ -204,7 +205,7 @@ TEST_CASE("a rim is what rises out of the source's slab within its outline") {
   CHECK(has_rim(source, 1e-5, 64, scene));
 }
 
-TEST_CASE("cells: they cover the source once, and light varies little over each") {
+TEST_CASE("source cells cover the source once, and light varies little over each") {
   const FlatSource source{{{-2, -2, 0.3}, {4, 0, 0}, {0, 4, 0}, {0, 0, -1}}, {}};
   OneSource one(receivers_on_floor(4, 0.01f), source);
   CellLimits limits;
@@ -233,7 +234,7 @@ TEST_CASE("cells: they cover the source once, and light varies little over each"
   CHECK(visible_part(below, far.cluster.hull).corner_count == 0);
 }
 
-TEST_CASE("certificates: lit, dark, or what is left") {
+TEST_CASE("certificates: lit, dark, or undecided") {
   OneSource one(receivers_on_floor(4, 0.01f));
   const MaskFrame frame = one.frame();
   const SourceTask task = one.task();
@@ -274,7 +275,8 @@ TEST_CASE("certificates: a cluster is halved while its list is long, and every m
   CHECK(one.counters.mask_facets < one.counters.masks * 64 / 2);
 }
 
-TEST_CASE("certificates: where only some of a cluster see a shadow's edge, only they get masks") {
+TEST_CASE(
+    "certificates: if only some members of a cluster see a shadow edge, only they get masks") {
   OneSource one(receivers_on_floor(16, 0.1f));
   const MaskFrame frame = one.frame();
   const SourceTask task = one.task();
@@ -296,7 +298,7 @@ TEST_CASE("certificates: where only some of a cluster see a shadow's edge, only 
   CHECK(one.counters.masks + lit + dark == 256);
 }
 
-TEST_CASE("receivers in a tree: halves hold what their parent holds, each once") {
+TEST_CASE("receiver tree: halves contain the receivers of their parent, each once") {
   OneSource one(receivers_on_floor(6, 0.1f));
   ReceiverTree tree;
   tree.set(one.cluster, one.members, one.cluster.hull);
@@ -327,7 +329,7 @@ TEST_CASE("receivers in a tree: halves hold what their parent holds, each once")
   CHECK(seen == one.members);
 }
 
-TEST_CASE("masks: of a complete list they are the answer") {
+TEST_CASE("masks: with a complete list they are the answer") {
   OneSource one({receivers_on_floor(1, 1)});
   one.options.lattice = fine_lattice;
   const MaskFrame frame = one.frame();
@@ -355,7 +357,7 @@ TEST_CASE("masks: of a complete list they are the answer") {
   CHECK(answer.answer == ShadowAnswer::masked);
 }
 
-TEST_CASE("masks: of an incomplete list what is dark is answered, what is open waits for rays") {
+TEST_CASE("masks: with an incomplete list dark samples are answered, open ones wait for rays") {
   OneSource one({receivers_on_floor(1, 1)});
   const MaskFrame frame = one.frame();
   const SourceTask task = one.task();

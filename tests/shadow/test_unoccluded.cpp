@@ -35,7 +35,7 @@ TEST_CASE("a strip of 10 m x 1 cm from 20 m away, low over the horizon") {
         doctest::Approx(expected).epsilon(1e-5));
 }
 
-TEST_CASE("unoccluded light holds its digits") {
+TEST_CASE("unoccluded light keeps its precision") {
   double worst = 0;
   int compared = 0;
   for (uint64_t seed = 0; seed < 3000; ++seed) {

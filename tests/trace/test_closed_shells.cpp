@@ -92,7 +92,7 @@ bool is_held(const Scene& s, const Vec3& p) {
 
 }  // namespace
 
-TEST_CASE("what is proved to be closed off, no ray leaves") {
+TEST_CASE("no ray leaves a space that is proved closed") {
   Random r(41);
   int held = 0, free = 0;
   std::vector<Corners> targets;
@@ -127,7 +127,7 @@ TEST_CASE("what is proved to be closed off, no ray leaves") {
   CHECK(free > 3000);
 }
 
-TEST_CASE("rooms whose walls meet are found, whatever they are made of; open ones are not") {
+TEST_CASE("rooms whose walls meet are found, for any mesh; open ones are not") {
   Scene s;
   const uint32_t m = add_diffuse(s, Rgb{0.5f});
   const std::array<uint32_t, 6> walls = add_box_inside(s, m, {0, 0, 0}, {5, 4, 2.7f});
@@ -137,7 +137,7 @@ TEST_CASE("rooms whose walls meet are found, whatever they are made of; open one
   CHECK(is_held(s, by_the_floor));
   CHECK_FALSE(is_held(s, outside));
   CHECK_FALSE(is_held(s, under));
-  SUBCASE("a free sheet and a box within change nothing") {
+  SUBCASE("a free sheet and a box inside change nothing") {
     add_quad(s, m, {Vec3{1, 1, 1}, {2, 1, 1}, {2, 2, 1}, {1, 2, 1}});
     add_box_inside(s, m, {3, 1, 0}, {4, 2, 1});
     CHECK(is_held(s, inside));
@@ -159,7 +159,7 @@ TEST_CASE("rooms whose walls meet are found, whatever they are made of; open one
   }
 }
 
-TEST_CASE("edges along an axis may end at others' inner points, slanted ones may not") {
+TEST_CASE("axis-parallel edges may end inside other edges, oblique ones may not") {
   // a wall of four panels around a window that a shutter closes
   const auto room = [](bool has_shutter, float lean) {
     Scene s;
@@ -186,7 +186,7 @@ TEST_CASE("edges along an axis may end at others' inner points, slanted ones may
   CHECK_FALSE(is_held(room(true, 0.3f), {2, 2, 1}));
 }
 
-TEST_CASE("closed or not at any size and place, and where nothing is") {
+TEST_CASE("closedness does not depend on size and place; an empty scene has no shells") {
   for (const float size : {1e-3f, 1.0f, 2e3f})
     for (const float away : {0.0f, 1e4f}) {
       Scene s;
@@ -203,7 +203,7 @@ TEST_CASE("closed or not at any size and place, and where nothing is") {
   CHECK_FALSE(ClosedShells().hold({0, 0, 0}));
 }
 
-TEST_CASE("a room is found beside a mesh of more triangles than are looked at") {
+TEST_CASE("a room is found beside a mesh with more triangles than are examined") {
   Random r(21);
   Scene scene;
   scene.materials.resize(1);

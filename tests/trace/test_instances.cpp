@@ -138,7 +138,7 @@ TEST_CASE("rays meet instances as they meet copies") {
   }
 }
 
-TEST_CASE("holes and backs of instances, mirrored ones too, are where those of copies are") {
+TEST_CASE("holes and backs of instances, also mirrored ones, equal those of copies") {
   Scene scene = room_of_instances(places_in_room());
   size_t on_instances = 0;
   punch(scene);
@@ -183,7 +183,7 @@ TEST_CASE("instances of glass are panes") {
   CHECK(p.places.size() == q.places.size());
 }
 
-TEST_CASE("shafts find the facets of instances that they find of copies") {
+TEST_CASE("shafts find the same facets with instances and with copies") {
   const Scene scene = room_of_instances(places_in_room());
   const Scene copies = copied_out(scene);
   const Occluders a(scene), b(copies);
@@ -215,7 +215,7 @@ TEST_CASE("shafts find the facets of instances that they find of copies") {
   CHECK(left_out > 50);
 }
 
-TEST_CASE("facets of instances face as copies do, and say of which closed surface they are") {
+TEST_CASE("facets of instances have the orientation and closed surface of copies") {
   const Scene scene = room_of_instances(places_in_room());
   const Scene copies = copied_out(scene);
   const Occluders a(scene), b(copies);
@@ -243,7 +243,7 @@ TEST_CASE("facets of instances face as copies do, and say of which closed surfac
   CHECK(a.facet_of(first_instance(scene), 1'000'000) == no_facet);
 }
 
-TEST_CASE("what has holes in instances is told apart, as of copies") {
+TEST_CASE("instances with holes are distinguished, as copies are") {
   Scene scene = room_of_instances(places_in_room());
   punch(scene);
   const Scene copies = copied_out(scene);

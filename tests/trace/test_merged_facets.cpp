@@ -148,7 +148,7 @@ Mesh mesh_of(const Tessellation& t, const Place& place = {}) {
 
 }  // namespace
 
-TEST_CASE("a rectangle is one facet, however it is cut") {
+TEST_CASE("a rectangle is one facet, however it is divided") {
   for (uint64_t seed = 0; seed < 60; ++seed) {
     Random r(seed);
     const Place place = seed % 4 == 0 ? Place{} : random_place(r, seed % 4 == 1 ? 1 : 20);
@@ -186,7 +186,7 @@ TEST_CASE("walls with windows and L-shapes are few facets") {
   }
 }
 
-TEST_CASE("a wall cut without order: about pairs of triangles at worst") {
+TEST_CASE("an irregularly divided wall: about pairs of triangles at worst") {
   for (uint64_t seed = 0; seed < 60; ++seed) {
     Random r(seed);
     // a ring of triangles around a window, then random splits
@@ -258,7 +258,7 @@ TEST_CASE("a tessellated box is six facets and stays closed") {
   }
 }
 
-TEST_CASE("what must not merge does not") {
+TEST_CASE("facets that must not merge stay separate") {
   Random r(1);
   Mesh m = mesh_of(random_grid(r, 4, 4, 1, 1));
   // the same sheet twice, in one mesh and in two

@@ -150,7 +150,7 @@ void wait_for_other_threads() {
 
 }  // namespace
 
-TEST_CASE("what lies elsewhere changes no facet, however many triangles it has") {
+TEST_CASE("meshes elsewhere change no facet, however many triangles they have") {
   const Scene few = soup(7, 2000);
   Scene many = few;
   constexpr int others = (1 << 18) + 1;
@@ -182,7 +182,7 @@ TEST_CASE("what lies elsewhere changes no facet, however many triangles it has")
   CHECK(gathered > 1000);
 }
 
-TEST_CASE("the tree is the same, whatever threads there are") {
+TEST_CASE("the tree is the same for any number of threads") {
   const Scene scene = piles();
   Occluders::Found one;
   run_on_one_thread([&] { one = all_of(Occluders(scene)); });
@@ -195,7 +195,7 @@ TEST_CASE("the tree is the same, whatever threads there are") {
     });
 }
 
-TEST_CASE("occluders are built on the thread that asks for them, and on no other") {
+TEST_CASE("occluders are built only on the thread that asks for them") {
   const Scene scene = soup(3, 100'000);
   wait_for_other_threads();
   // clocks of a busy machine may be off by some percent
@@ -212,7 +212,7 @@ TEST_CASE("occluders are built on the thread that asks for them, and on no other
   CHECK(least < 0.02);
 }
 
-TEST_CASE("every hit lies on the facet that its triangle became") {
+TEST_CASE("every hit lies on the facet of its triangle") {
   const Scene scene = soup(5, 3000);
   const Occluders occluders(scene);
   const Tracer tracer(scene);
@@ -266,7 +266,7 @@ TEST_CASE("triangles of a flat face become one quadrilateral, others stay") {
   CHECK(Occluders(bent).facet_count() == 2);
 }
 
-TEST_CASE("closed surfaces are told from open ones") {
+TEST_CASE("closed surfaces are distinguished from open ones") {
   Scene s;
   s.materials.resize(1);
   Mesh m;
@@ -298,7 +298,7 @@ TEST_CASE("degenerate meshes: no area, duplicates, no triangles, nothing at all"
   CHECK(o.facet_of(7, 0) == no_facet);
 }
 
-TEST_CASE("what is no facet is reported, not left out: spheres and disks as they are") {
+TEST_CASE("shapes that are not facets are reported: spheres and disks stay exact") {
   Scene s;
   s.materials.resize(2);
   s.materials[1].is_alpha_masked = true;

@@ -51,7 +51,7 @@ Surface hit_from(const Scene& scene, const Vec3& origin, const Vec3& target, con
 
 }  // namespace
 
-TEST_CASE("a footprint is as wide as the cone, and longer where it leans") {
+TEST_CASE("a footprint is as wide as the cone, and longer on tilted surfaces") {
   Material m;
   m.base_color.texture = 0;
   const Scene scene = square(m, ramp());
@@ -69,7 +69,7 @@ TEST_CASE("a footprint is as wide as the cone, and longer where it leans") {
   CHECK(s.uv.axis_a == Vec2{0, 0});
 }
 
-TEST_CASE("bumps lean the normal by the gradient of their heights") {
+TEST_CASE("bumps tilt the normal by the gradient of their heights") {
   for (const float cone : {0.0f, 0.2f})
     for (const float scale : {1.0f, -2.0f}) {
       Material m;
@@ -83,7 +83,7 @@ TEST_CASE("bumps lean the normal by the gradient of their heights") {
     }
 }
 
-TEST_CASE("mirrored coordinates and smooth normals change nothing of where bumps are") {
+TEST_CASE("mirrored coordinates and smooth normals do not move bumps") {
   Material m;
   m.bump = {1, 0, 0};
   Scene scene = square(m, ramp());
@@ -92,7 +92,7 @@ TEST_CASE("mirrored coordinates and smooth normals change nothing of where bumps
   CHECK(length(n - normalize(Vec3{0.15f, -0.05f, 1})) < 2e-3f);
 }
 
-TEST_CASE("backs that are unseen: to the eye alone") {
+TEST_CASE("invisible back sides are invisible only to the camera") {
   for (const bool is_masked : {false, true}) {
     Material m;
     m.back_faces = BackFaces::unseen;
@@ -120,7 +120,7 @@ TEST_CASE("backs that are unseen: to the eye alone") {
   }
 }
 
-TEST_CASE("of one-sided triangles back to back, every ray meets the one that faces it") {
+TEST_CASE("with one-sided triangles back to back, every ray hits the one that faces it") {
   for (const bool is_turned_first : {false, true}) {
     Material m;
     m.back_faces = BackFaces::unseen;
@@ -149,7 +149,7 @@ TEST_CASE("of one-sided triangles back to back, every ray meets the one that fac
   }
 }
 
-TEST_CASE("what shines by a texture is seen with its mean over the footprint") {
+TEST_CASE("textured emission is averaged over the footprint") {
   // Columns of 1 and 3, each 1/64 of (u,v) wide, which is 1/32 m.
   Texture columns = grey_image(64, 1, [](int x, int) { return x % 2 == 0 ? 1.0f : 3.0f; });
   build_levels(columns);
@@ -175,7 +175,7 @@ TEST_CASE("what shines by a texture is seen with its mean over the footprint") {
   CHECK(spread > 1);
 }
 
-TEST_CASE("a grain lies along growing u, turned as it is told, in the frame of the normal") {
+TEST_CASE("anisotropy lies along increasing u, rotated as given, in the frame of the normal") {
   const Vec3 expected[] = {{1, 0, 0}, {0, -1, 0}, {0, 1, 0}};
   for (int i = 0; i < 3; ++i) {
     Material m;

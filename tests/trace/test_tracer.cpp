@@ -79,7 +79,7 @@ TEST_CASE("hit points lie on their surfaces and normals are unit") {
   }
 }
 
-TEST_CASE("a ray that leaves a surface does not meet it again") {
+TEST_CASE("a ray that leaves a surface does not hit it again") {
   const Scene scene = box_scene();
   const Tracer tracer(scene);
   const std::vector<Ray> rays = random_rays(20000);

@@ -25,7 +25,9 @@ double variance_for(const std::vector<double>& luminances, double q, double samp
 
 }  // namespace
 
-TEST_CASE("what is bright may err by more than what is usual, and by less than its own") {
+TEST_CASE(
+    "bright pixels may have more than the usual error, but less than in proportion to their "
+    "light") {
   CHECK(allowed_error(0.1, 0.01, 2) == doctest::Approx(0.2));
   CHECK(allowed_error(0.1, 8, 2) == doctest::Approx(0.1 * 4));
   CHECK(allowed_error(0.1, 8, 2, {16, 0.6}) ==
@@ -36,7 +38,7 @@ TEST_CASE("what is bright may err by more than what is usual, and by less than i
   CHECK(allowed_error(0.1, 3, 0) == doctest::Approx(0.3 / 4));
 }
 
-TEST_CASE("what bright pixels may err by leaves the picture the least error for its samples") {
+TEST_CASE("the allowed error of bright pixels minimizes the picture's error for its samples") {
   std::vector<double> luminances;
   for (int k = 0; k < 50; ++k) luminances.push_back(std::pow(1.1, k));
   struct Law {

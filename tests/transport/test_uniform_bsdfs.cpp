@@ -10,7 +10,7 @@
 using namespace troffer;
 using namespace troffer::test;
 
-TEST_CASE("materials that are even are kept, and those that differ by place are not") {
+TEST_CASE("uniform materials are cached, textured ones are not") {
   Scene s;
   s.textures.push_back(grey_image(2, 2, [](int, int) { return 0.5f; }));
   const auto add = [&](MaterialKind kind, const auto& change) {

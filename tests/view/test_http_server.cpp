@@ -48,7 +48,7 @@ struct Server {
 
 }  // namespace
 
-TEST_CASE("who knows the token is answered, with the page's own rules of safety") {
+TEST_CASE("requests with the token are answered, with the page's security headers") {
   Server s;
   const std::string answer = s.ask("GET /" + token + "/state?a=1&b=x%20y");
   CHECK(status_of(answer) == 200);
@@ -65,7 +65,7 @@ TEST_CASE("who knows the token is answered, with the page's own rules of safety"
   CHECK(s.server.address() == "http://" + s.host() + "/" + token + "/");
 }
 
-TEST_CASE("without the token there is nothing, whatever else is asked") {
+TEST_CASE("requests without the token get nothing") {
   Server s;
   std::string wrong = token;
   wrong[5] = 'x';
@@ -77,7 +77,7 @@ TEST_CASE("without the token there is nothing, whatever else is asked") {
   CHECK(s.calls == 0);
 }
 
-TEST_CASE("another host or another origin is refused: names that are made to lead here") {
+TEST_CASE("other hosts and origins are refused (DNS rebinding)") {
   Server s;
   const auto with_host = [&](const std::string& host) {
     const Client client(s.server.port());
@@ -98,7 +98,7 @@ TEST_CASE("another host or another origin is refused: names that are made to lea
   CHECK(s.calls == 3);
 }
 
-TEST_CASE("bodies and heads have bounds, methods are two") {
+TEST_CASE("bodies and headers have size limits, and only allowed methods are accepted") {
   HttpLimits limits;
   limits.body_bytes = 1000;
   Server s(limits);
@@ -122,7 +122,7 @@ TEST_CASE("bodies and heads have bounds, methods are two") {
   CHECK(status_of(s.ask("GET /" + token + "/state")) == 200);
 }
 
-TEST_CASE("an address of too many arguments is refused at once, and holds no connection") {
+TEST_CASE("an address with too many arguments is refused at once and holds no connection") {
   HttpLimits limits;
   limits.connections = 4;
   Server s(limits);
@@ -136,7 +136,7 @@ TEST_CASE("an address of too many arguments is refused at once, and holds no con
   CHECK(status_of(s.ask("GET /" + token + "/state")) == 200);
 }
 
-TEST_CASE("HEAD is answered as GET is, without a body; a length that is told twice is refused") {
+TEST_CASE("HEAD is answered like GET without a body; a repeated Content-Length is refused") {
   Server s;
   const std::string answer = s.ask("HEAD /" + token + "/state");
   CHECK(status_of(answer) == 200);
@@ -149,7 +149,7 @@ TEST_CASE("HEAD is answered as GET is, without a body; a length that is told twi
   CHECK(s.calls == 1);
 }
 
-TEST_CASE("what is no HTTP ends the connection, and the next is answered") {
+TEST_CASE("malformed HTTP ends the connection, and the next request is answered") {
   Server s;
   for (const std::string& bytes : {std::string("\0\0\0\0\r\n\r\n", 8), std::string("GET\r\n\r\n"),
                                    std::string("\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", 11) +
@@ -162,14 +162,14 @@ TEST_CASE("what is no HTTP ends the connection, and the next is answered") {
   CHECK(status_of(s.ask("GET /" + token + "/state")) == 200);
 }
 
-TEST_CASE("errors of the answer become statuses") {
+TEST_CASE("errors in a handler become HTTP statuses") {
   Server s;
   CHECK(status_of(s.ask("GET /" + token + "/fails")) == 400);
   CHECK(status_of(s.ask("GET /" + token + "/breaks")) == 500);
   CHECK(status_of(s.ask("GET /" + token + "/state")) == 200);
 }
 
-TEST_CASE("who sends a request byte by byte is left behind; others are served meanwhile") {
+TEST_CASE("a client that sends byte by byte is dropped; others are served meanwhile") {
   HttpLimits limits;
   limits.request_seconds = 0.2;
   Server s(limits);
@@ -187,7 +187,7 @@ TEST_CASE("who sends a request byte by byte is left behind; others are served me
   CHECK(s.calls == 1);
 }
 
-TEST_CASE("so many connections at a time, and no more") {
+TEST_CASE("the number of concurrent connections is limited") {
   HttpLimits limits;
   limits.connections = 4;
   Server s(limits);
@@ -204,7 +204,7 @@ TEST_CASE("so many connections at a time, and no more") {
   CHECK(status == 200);
 }
 
-TEST_CASE("it listens on this machine's own address alone, and says where a port is taken") {
+TEST_CASE("the server listens only on this machine's loopback address and reports a port in use") {
   Server s;
   const Client other(s.server.port(), 0x7f000002);  // 127.0.0.2: another address of this machine
   CHECK(!other.is_connected());
@@ -213,7 +213,7 @@ TEST_CASE("it listens on this machine's own address alone, and says where a port
       EnvironmentError);
 }
 
-TEST_CASE("tokens are of 128 random bits, and compared whole") {
+TEST_CASE("tokens have 128 random bits and are compared completely") {
   const std::string a = random_token(), b = random_token();
   CHECK(a.size() == 32);
   CHECK(a.find_first_not_of("0123456789abcdef") == a.npos);

@@ -64,7 +64,7 @@ double rms_difference(const Image& a, const Image& b) {
 
 }  // namespace
 
-TEST_CASE("layers by single luminaires add up to the picture by all, after any move") {
+TEST_CASE("layers of single luminaires add up to the picture of all, after any camera move") {
   const auto lighting = std::make_shared<Lighting>(room());
   LayerBoard board;
   Painter painter(board, options());
@@ -106,7 +106,7 @@ TEST_CASE("layers by single luminaires add up to the picture by all, after any m
   CHECK(mean_of(whole) == doctest::Approx(mean_of(own)).epsilon(0.01));
 }
 
-TEST_CASE("under set dimmers the first picture after a move shows the settings") {
+TEST_CASE("with dimmers set, the first picture after a move shows the settings") {
   const auto lighting = std::make_shared<Lighting>(room());
   LayerBoard board;
   Painter painter(board, options());
@@ -131,7 +131,7 @@ TEST_CASE("under set dimmers the first picture after a move shows the settings")
         doctest::Approx(mean_of(dimmed_picture(board, {Rgb{1}, Rgb{0.5f}}))).epsilon(0.1));
 }
 
-TEST_CASE("a scene under dimmers, which shares the tracer, renders as one of its own") {
+TEST_CASE("a dimmed scene that shares the tracer renders like an independent one") {
   const auto lighting = std::make_shared<Lighting>(room());
   const auto shared = lighting->dimmed({Rgb{0.5f, 0.25f, 1}, Rgb{0}});
   Scene own = room();
@@ -147,7 +147,7 @@ TEST_CASE("a scene under dimmers, which shares the tracer, renders as one of its
   CHECK(a.pixels == b.pixels);
 }
 
-TEST_CASE("light from elsewhere, on the cells that are kept: the picture is that of a new start") {
+TEST_CASE("changed light on stored cells gives the same picture as a new start") {
   LayerBoard board;
   Painter painter(board, options());
   painter.show(request_of(std::make_shared<Lighting>(room())));
@@ -168,7 +168,7 @@ TEST_CASE("light from elsewhere, on the cells that are kept: the picture is that
   CHECK(std::abs(mean_of(after) - before) > 0.1 * before);
 }
 
-TEST_CASE("a camera that cannot be used fails by itself; the next one is shown") {
+TEST_CASE("an unusable camera fails alone; the next one is shown") {
   const auto lighting = std::make_shared<Lighting>(room());
   LayerBoard board;
   Painter painter(board, options());
@@ -181,7 +181,7 @@ TEST_CASE("a camera that cannot be used fails by itself; the next one is shown")
   CHECK(painter.state().failure.empty());
 }
 
-TEST_CASE("the painter ends at once, whatever it is at") {
+TEST_CASE("the painter ends at once, whatever it is doing") {
   const auto lighting = std::make_shared<Lighting>(room());
   LayerBoard board;
   RenderOptions o = options();
@@ -196,7 +196,7 @@ TEST_CASE("the painter ends at once, whatever it is at") {
   { const Painter never_asked(board, o); }
 }
 
-TEST_CASE("points are measured in the background, whole and by single luminaires alike") {
+TEST_CASE("points are measured in the background, in total and by single luminaires") {
   const auto lighting = std::make_shared<Lighting>(room());
   MeasureOptions o;
   o.threads = 2;

@@ -60,7 +60,7 @@ TEST_CASE("a dimmer for every name; the weakest share the last one; no light is 
   CHECK(dimmers_of(Scene(), 16).empty());
 }
 
-TEST_CASE("settings of dimmers are read as they are written, and nothing else") {
+TEST_CASE("dimmer settings are read as written, and nothing else is accepted") {
   const DimmerSettings s = parse_dimmers("1,0.5,0;2,2,2", 2);
   CHECK(s[0].g == 0.5f);
   CHECK(s[1].b == 2);
@@ -71,7 +71,7 @@ TEST_CASE("settings of dimmers are read as they are written, and nothing else") 
     CHECK_THROWS_AS(parse_dimmers(bad, 2), UsageError);
 }
 
-TEST_CASE("measurements by single luminaires add up, their errors as independent ones do") {
+TEST_CASE("measurements of single luminaires add up, with independent errors") {
   MeasuringAnswer a;
   a.values = {{{Rgb{3}, 300, 4}}, {{Rgb{1, 0, 0}, 21.26, 3}}};
   auto m = dimmed_measurements(a, {Rgb{1}, Rgb{1}});
@@ -89,7 +89,7 @@ TEST_CASE("measurements by single luminaires add up, their errors as independent
   CHECK(csv.find("\n1,2,3,0,0,1,3,3,3,300,4\n") != csv.npos);
 }
 
-TEST_CASE("pictures by single luminaires add up; where one is missing there is none") {
+TEST_CASE("pictures of single luminaires add up; if one is missing there is none") {
   LayerBoard board;
   CHECK_THROWS_AS(dimmed_picture(board, {Rgb{1}, Rgb{1}}), UsageError);
   board.put("whole", Image(2, 1, Rgb{5}), 7, 0);
@@ -125,7 +125,7 @@ TEST_CASE("a grid fills its rectangle with nearly square fields") {
   CHECK_THROWS_AS(grid_between({{0, 0, 0}, {0, 0, 1}}, {4, 4, 0}, {0, 0, 1}, 0), UsageError);
 }
 
-TEST_CASE("cameras come back as they were sent, and mirrored worlds stay mirrored") {
+TEST_CASE("cameras are returned as they were sent, and mirrored worlds stay mirrored") {
   for (const float hand : {1.0f, -1.0f}) {
     Camera c = look_at({1, 2, 3}, {4, 6, 3}, {0, 0, 1}, 50);
     c.right = c.right * hand;
@@ -139,7 +139,7 @@ TEST_CASE("cameras come back as they were sent, and mirrored worlds stay mirrore
   }
 }
 
-TEST_CASE("cameras that are none are refused") {
+TEST_CASE("invalid cameras are refused") {
   const Camera base = look_at({0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 50);
   const auto with = [&](const std::string& text) {
     return camera_of_json(parse_object(text), base, {});
@@ -157,7 +157,7 @@ TEST_CASE("cameras that are none are refused") {
     CHECK_THROWS_AS(with(bad), UsageError);
 }
 
-TEST_CASE("passes get finer, to what is asked; others take more samples") {
+TEST_CASE("passes get finer down to the asked error; other methods take more samples") {
   const auto passes = passes_to(Method::certified, 0.01);
   CHECK(passes.front().shrink == 2);
   CHECK(passes.back().error == 0.01);

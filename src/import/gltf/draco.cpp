@@ -142,7 +142,7 @@ DracoMesh decode_draco(std::span<const uint8_t> bytes, std::span<const uint32_t>
     const uint64_t allowed = std::max(always_allowed, triangles_per_byte * bytes.size());
     if (claim.triangles > max_triangles) return failed("the Draco data has too many triangles");
     if (claim.triangles > allowed || claim.vertices > 3 * allowed)
-      return failed("the Draco data is too short for what it should become");
+      return failed("the Draco data is too short for its decoded size");
     return decode(bytes, ids);
   } catch (const std::bad_alloc&) {
     return failed("not enough memory for the Draco data");

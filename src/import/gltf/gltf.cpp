@@ -67,7 +67,7 @@ class Importer {
     materials_.check_unused_images();
     baked_.finish();
     if (scene_.meshes.empty() && scene_.instances.empty())
-      scene_.warnings.add("the scene shows no triangles");
+      scene_.warnings.add("the scene has no visible triangles");
   }
 
  private:
@@ -80,7 +80,8 @@ class Importer {
     const auto animations = root_.find("animations");
     if (animations && animations->size() > 0)
       scene_.warnings.add(
-          "animations are not played: nodes stand where the file has them (--time shows a moment)");
+          "animations are not played: nodes stay where the file puts them (--time chooses a "
+          "moment)");
   }
 
   JsonNode node_json(const GltfNode& node) const {
@@ -302,7 +303,7 @@ Scene import_gltf(const std::string& path, const ImportOptions& options) {
         scene.file = path;
         scene.is_photometric = true;
         if (file.is_out_of_order)
-          scene.warnings.add("the binary chunk is not the second one; it is read all the same");
+          scene.warnings.add("the binary chunk is not the second one; it is read anyway");
         check_gltf_document(document.root(), scene.warnings);
         check_gltf_extensions(document.root(), scene.warnings);
         Importer(document.root(), file, options, scene, bounds).run();

@@ -54,7 +54,7 @@ constexpr std::array<ElementShape, 7> element_shapes{{{"SCALAR", 1, 1},
 const ElementShape& shape_of(const JsonNode& type) {
   for (const ElementShape& shape : element_shapes)
     if (type.as_string() == shape.name) return shape;
-  type.fail("'" + printable(type.as_string()) + "' is no accessor type");
+  type.fail("'" + printable(type.as_string()) + "' is not an accessor type");
 }
 
 // Bytes from the first to the last byte of an element. Columns of matrices start at multiples of 4
@@ -217,7 +217,7 @@ std::optional<std::span<const uint8_t>> GltfBuffers::range(const JsonNode& where
   if (!contents) return std::nullopt;
   const uint64_t available = contents->size();
   if (offset > available || length > available - offset)
-    length_node.fail("the view ends behind the " + std::to_string(available) + " bytes of buffer " +
+    length_node.fail("the view ends after the " + std::to_string(available) + " bytes of buffer " +
                      std::to_string(index));
   return std::span(*contents).subspan(size_t(offset), size_t(length));
 }
@@ -231,7 +231,7 @@ void GltfBuffers::check_view(const JsonNode& view) {
     if (!from) compressed->fail("its compressed data lies in a buffer without data");
     const uint64_t length = view.member("byteLength").as_integer(~uint64_t(0));
     if (length > max_decoded_bytes - decoded_bytes_)
-      compressed->fail("the compressed data of this file becomes too much");
+      compressed->fail("the compressed data of this file decompresses to too much");
     decoded_bytes_ += length;
     decoded_.push_back(
         std::make_shared<std::vector<uint8_t>>(decode_meshopt(*compressed, *from, length)));
@@ -267,7 +267,7 @@ void GltfBuffers::check_accessor(const JsonNode& accessor) {
   const JsonNode type = accessor.member("componentType"), count = accessor.member("count");
   view.component_type = uint32_t(type.as_integer(0xffffffffu));
   const uint32_t bytes = component_size(view.component_type);
-  if (bytes == 0) type.fail(std::to_string(view.component_type) + " is no component type");
+  if (bytes == 0) type.fail(std::to_string(view.component_type) + " is not a component type");
   const ElementShape& shape = shape_of(accessor.member("type"));
   view.components = shape.rows * shape.columns;
   view.count = count.as_integer(0xffffffffu);
@@ -295,7 +295,7 @@ void GltfBuffers::check_sparse(const JsonNode& sparse, AccessorView& view, uint6
                  values = sparse.member("values"), type = indices.member("componentType");
   view.sparse_count = count.as_integer(view.count);
   view.sparse_index_type = uint32_t(type.as_integer(0xffffffffu));
-  if (!is_unsigned_integer(view.sparse_index_type)) type.fail("is no unsigned integer type");
+  if (!is_unsigned_integer(view.sparse_index_type)) type.fail("is not an unsigned integer type");
   const uint32_t size = component_size(view.sparse_index_type);
   view.sparse_indices = checked_range(indices, indices.integer_or("byteOffset", 0, ~uint64_t(0)),
                                       view.sparse_count, size, size);

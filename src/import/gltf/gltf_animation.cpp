@@ -33,7 +33,7 @@ Interpolation interpolation_of(const JsonNode& sampler) {
   if (name == "LINEAR") return Interpolation::linear;
   if (name == "STEP") return Interpolation::step;
   if (name == "CUBICSPLINE") return Interpolation::cubic;
-  sampler.member("interpolation").fail("'" + printable(name) + "' is no interpolation");
+  sampler.member("interpolation").fail("'" + printable(name) + "' is not an interpolation");
 }
 
 // Position of a time between two keys: [1] appendix C.
@@ -115,13 +115,13 @@ AnimationCurve read_curve(const JsonNode& sampler, const GltfBuffers& buffers, u
   const AccessorView& values = buffers.accessor(output);
   const Interpolation interpolation = interpolation_of(sampler);
   if (times.components != 1 || times.component_type != gltf_float || times.count == 0)
-    input.fail("its accessor should hold times: scalars of floats, one at least");
+    input.fail("its accessor should hold times: at least one scalar float");
   if (values.components != components)
     output.fail("its accessor should have " + std::to_string(components) + " components");
   const uint64_t parts = interpolation == Interpolation::cubic ? 3 : 1;
   const uint64_t width = has_many ? values.count / times.count / parts : 1;
   if (values.count != times.count * parts * width || width == 0 || width > max_weights)
-    output.fail("its accessor's count does not fit that of the times");
+    output.fail("its accessor's count does not match that of the times");
   return {times, values, interpolation, width};
 }
 
@@ -146,7 +146,7 @@ void apply_channel(const JsonNode& animation, const JsonNode& channel, size_t no
   const auto node = target.find("node");
   const bool is_weights = path == "weights", is_rotation = path == "rotation";
   if (!node || (!is_weights && !is_rotation && path != "translation" && path != "scale")) {
-    warnings.add("animations of what is no property of a node (" + printable(path) +
+    warnings.add("animations of anything but properties of nodes (" + printable(path) +
                  ") are not played");
     return;
   }

@@ -52,9 +52,9 @@ void GltfBaked::choose_set(int set, const JsonNode& node, GltfMaterial& material
   else if (set != sets.first && sets.second < 0)
     sets.second = set;
   else if (set != sets.first && set != sets.second)
-    scene_.warnings.add(node.pointer() +
-                        ": its lightmap goes by a third set of coordinates and is looked up by "
-                        "the first");
+    scene_.warnings.add(
+        node.pointer() +
+        ": its lightmap uses a third set of texture coordinates; the first set is used instead");
   material.is_textured = true;
 }
 

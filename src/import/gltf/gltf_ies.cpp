@@ -33,7 +33,8 @@ Luminaire read_profile(const JsonNode& profile, const GltfBuffers& buffers, Warn
 Rgb factor_of(const JsonNode& instance) {
   const double multiplier = instance.number_or("multiplier", 1);
   const std::vector<double> color = instance.numbers_or("color", {1, 1, 1});
-  if (!(multiplier >= 0 && multiplier <= 1e12)) instance.fail("its multiplier cannot be");
+  if (!(multiplier >= 0 && multiplier <= 1e12))
+    instance.fail("its multiplier must lie between 0 and 1e12");
   const auto share = [](double c) { return std::clamp(c, 0.0, 1.0); };
   return Rgb{float(share(color[0])), float(share(color[1])), float(share(color[2]))} *
          float(multiplier);

@@ -97,7 +97,7 @@ EnvironmentMap map_of(const std::array<Face, 6>& cube) {
 std::array<Vec3, 3> axes_of(const JsonNode& light) {
   const std::vector<double> q = light.numbers_or("rotation", {0, 0, 0, 1});
   const double size = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  if (!(size > 0) || !std::isfinite(size)) light.fail("its rotation is none");
+  if (!(size > 0) || !std::isfinite(size)) light.fail("its rotation is not a rotation");
   const double x = q[0] / size, y = q[1] / size, z = q[2] / size, w = q[3] / size;
   return {Vec3(Vec3d{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)}),
           Vec3(Vec3d{2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)}),
@@ -124,7 +124,8 @@ void add_gltf_image_light(const JsonNode& root, const GltfBuffers& buffers, Scen
   const auto light = light_of_scene(root);
   if (!light) return;
   const double intensity = light->number_or("intensity", 1);
-  if (!(intensity >= 0 && intensity <= 1e12)) light->fail("its intensity cannot be");
+  if (!(intensity >= 0 && intensity <= 1e12))
+    light->fail("its intensity must lie between 0 and 1e12");
   const JsonNode faces = light->member("specularImages").element(0), images = root.member("images");
   if (faces.size() != 6) faces.fail("a cube has six faces");
   Light e;

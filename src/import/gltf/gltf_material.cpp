@@ -201,9 +201,7 @@ class GltfMaterials::Reader {
       const float alpha = sqr(material_.roughness.value);
       const float along = alpha + (1 - alpha) * sqr(strength);
       material_.roughness.value = std::min(std::sqrt(std::sqrt(alpha * along)), 1.0f);
-      warn(
-          "anisotropy of what transmits is approximated: gloss is even in all directions, as wide "
-          "as in the mean");
+      warn("anisotropic transmission is approximated: gloss is isotropic, with the mean width");
       return;
     }
     material_.anisotropy.value = strength;
@@ -228,9 +226,7 @@ class GltfMaterials::Reader {
     const bool is_even = material_.iridescence.texture < 0 &&
                          material_.film_thickness.texture < 0 && material_.roughness.texture < 0;
     if (is_rough_glass && !is_even)
-      warn(
-          "a film over rough glass that differs from place to place: light lost between its "
-          "microfacets is left out");
+      warn("a varying film over rough glass: light lost between microfacets is not restored");
   }
 
   void tell_what_is_left_out() {
@@ -238,7 +234,7 @@ class GltfMaterials::Reader {
       const char *extension, *what;
     };
     constexpr std::array<Sent, 3> list{
-        {{"KHR_materials_unlit", "unlit: shown diffuse, as lit as its place is"},
+        {{"KHR_materials_unlit", "unlit: shown diffuse, lit like other surfaces"},
          {"KHR_materials_dispersion", "dispersion is left out"},
          {"KHR_materials_volume_scatter", "scattering inside a volume is left out"}}};
     for (const Sent& told : list)
@@ -270,7 +266,7 @@ class GltfMaterials::Reader {
       result_.is_blended = true;
       material_.is_alpha_masked = material_.is_alpha_blended = base_has_alpha();
     } else if (mode != "OPAQUE") {
-      node_.member("alphaMode").fail("'" + printable(mode) + "' is no alpha mode");
+      node_.member("alphaMode").fail("'" + printable(mode) + "' is not an alpha mode");
     }
     if (material_.is_alpha_masked) material_.alpha.texture = material_.base_color.texture;
   }

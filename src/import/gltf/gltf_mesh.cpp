@@ -185,7 +185,7 @@ void wind_by_normals(Mesh& mesh, WarningLog& warnings) {
       if (!(dot(n, mesh.normals[v]) < 0)) return;
   }
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  warnings.add("a mesh is wound against its normals: the normals say which side is the front");
+  warnings.add("a mesh is wound against its normals: the normals decide which side is the front");
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ void decode_mode(const JsonNode& extension, std::span<const uint8_t> in, size_t 
                  ? meshopt_decodeIndexBuffer(out.data(), count, stride, in.data(), in.size())
                  : meshopt_decodeIndexSequence(out.data(), count, stride, in.data(), in.size());
   } else {
-    mode_node.fail("'" + printable(mode) + "' is no mode of compression");
+    mode_node.fail("'" + printable(mode) + "' is not a compression mode");
   }
   if (status != 0) extension.fail("its compressed data is broken, or of a newer version");
 }
@@ -38,10 +38,10 @@ void apply_filter(const JsonNode& extension, size_t count, size_t stride,
   if (filter == "NONE") return;
   const bool is_octahedral = filter == "OCTAHEDRAL", is_quaternion = filter == "QUATERNION";
   if (!is_octahedral && !is_quaternion && filter != "EXPONENTIAL")
-    extension.fail("'" + printable(filter) + "' is no filter");
+    extension.fail("'" + printable(filter) + "' is not a filter");
   if ((is_octahedral && stride != 4 && stride != 8) || (is_quaternion && stride != 8) ||
       stride % 4 != 0)
-    extension.fail("its byteStride does not suit its filter");
+    extension.fail("its byteStride does not match its filter");
   if (count == 0) return;
   if (is_octahedral)
     meshopt_decodeFilterOct(out.data(), count, stride);
@@ -65,7 +65,7 @@ std::vector<uint8_t> decode_meshopt(const JsonNode& extension, std::span<const u
   if (stride * count != byte_length)
     extension.fail("its count times its byteStride is not the length of the buffer view");
   if (byte_length > compressed.size() * max_ratio + always_allowed_bytes)
-    extension.fail("its data is too short for what it should become");
+    extension.fail("its data is too short for its decoded size");
   std::vector<uint8_t> out(size_t(byte_length), uint8_t(0));
   decode_mode(extension, compressed, size_t(count), size_t(stride), out);
   apply_filter(extension, size_t(count), size_t(stride), out);

@@ -108,7 +108,8 @@ std::vector<uint32_t> roots_of_scene(const JsonNode& root, const Hierarchy& hier
     const uint32_t parent = hierarchy.parent[i];
     is_below[i] = parent != none && (is_below[parent] || is_listed[parent]);
     if (is_listed[i] && parent != none)
-      warnings.add("a node listed in the scene is no root; it is shown where its parents place it");
+      warnings.add(
+          "a node listed in the scene is not a root; it is shown where its parents place it");
   }
   std::erase_if(roots, [&](uint32_t i) { return is_below[i]; });
   return roots;

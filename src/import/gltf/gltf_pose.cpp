@@ -64,7 +64,8 @@ std::vector<Affine> gltf_instances(const JsonNode& node, const GltfBuffers& buff
     if (view.components != components || view.component_type == gltf_unsigned_int)
       reference->fail("its accessor should be of type VEC" + std::to_string(components));
     if ((is_known && view.count != count) || view.count > max_instances)
-      reference->fail("its accessor has another count than its neighbours, or too many elements");
+      reference->fail(
+          "its accessor's count differs from that of the other attributes, or is too large");
     count = view.count;
     is_known = true;
     return &view;
@@ -92,7 +93,7 @@ std::vector<Affine> gltf_instances(const JsonNode& node, const GltfBuffers& buff
 
 Affine gltf_rotation(const JsonNode& where, double qx, double qy, double qz, double qw) {
   const double length = std::sqrt(qx * qx + qy * qy + qz * qz + qw * qw);
-  if (!(length > 1e-6) || !std::isfinite(length)) where.fail("is no rotation");
+  if (!(length > 1e-6) || !std::isfinite(length)) where.fail("is not a rotation");
   const double x = qx / length, y = qy / length, z = qz / length, w = qw / length;
   Affine a;
   a.columns = {Vec3d{1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)},

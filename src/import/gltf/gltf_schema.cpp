@@ -257,7 +257,7 @@ void check_cameras(const JsonNode& root) {
   for (size_t i = 0; cameras && i < cameras->size(); ++i) {
     const JsonNode camera = cameras->element(i), type = camera.member("type");
     if (type.as_string() != "perspective" && type.as_string() != "orthographic")
-      type.fail("'" + printable(type.as_string()) + "' is no camera type");
+      type.fail("'" + printable(type.as_string()) + "' is not a camera type");
     camera.member(type.as_string());
   }
 }
@@ -330,7 +330,7 @@ void check_gltf_extensions(const JsonNode& root, WarningLog& warnings) {
     }
   };
   tell("extensionsRequired",
-       "is not supported, though the file requires it: what it says is missing in the picture");
+       "is not supported, although the file requires it: its effects are missing in the picture");
   tell("extensionsUsed", "is not supported and ignored");
 }
 

@@ -21,7 +21,7 @@ WrapMode wrap_mode(const JsonNode& sampler, const char* key) {
     case 33648:
       return WrapMode::mirror;
     default:
-      node->fail(std::to_string(value) + " is no wrapping mode");
+      node->fail(std::to_string(value) + " is not a wrapping mode");
   }
 }
 
@@ -32,7 +32,7 @@ void read_sampler(const JsonNode& sampler, Texture& look) {
   if (const auto filter = sampler.find("magFilter")) {
     const uint64_t value = filter->as_integer(~uint64_t(0));
     if (value != nearest && value != linear)
-      filter->fail(std::to_string(value) + " is no magnification filter");
+      filter->fail(std::to_string(value) + " is not a magnification filter");
     look.is_filtered = value == linear;
   }
 }
@@ -140,7 +140,7 @@ GltfTextureUse gltf_texture(const JsonNode& root, const JsonNode& info, bool is_
   if (!source) {
     // The only image may be in an extension's format.
     scene.warnings.add(printable(texture.pointer()) +
-                       ": has no image of a format that is read; grey stands for it");
+                       ": has no image of a supported format; grey replaces it");
     use.stand_in = stand_in_for_missing(is_srgb);
     return use;
   }

@@ -66,8 +66,8 @@ GltfUvSets gltf_uv_sets(const JsonNode& material, WarningLog& warnings) {
   const bool has_holes = material.string_or("alphaMode", "OPAQUE") != "OPAQUE";
   if (emits && has_holes && *emission != sets.first)
     warnings.add(material.pointer() +
-                 ": alpha and emission use different sets of coordinates; the base colour's serves "
-                 "both");
+                 ": alpha and emission use different sets of texture coordinates; both use the "
+                 "base colour's set");
   else if (emits)
     sets.first = *emission;
   for (const int set : used) {
@@ -76,9 +76,9 @@ GltfUvSets gltf_uv_sets(const JsonNode& material, WarningLog& warnings) {
       sets.second = set;
       continue;
     }
-    warnings.add(material.pointer() +
-                 ": textures use more than two sets of coordinates; the first one's serves the "
-                 "others");
+    warnings.add(
+        material.pointer() +
+        ": textures use more than two sets of texture coordinates; the others use the first set");
     break;
   }
   return sets;

@@ -25,7 +25,8 @@ std::optional<uint32_t> find_gltf_variant(const JsonNode& root,
     throw UsageError("--variant: the scene has no variant '" + printable(*name) + "'" +
                      (names.empty() ? "" : ", but " + names));
   if (!names.empty())
-    warnings.add("the materials have variants, of which the default one is shown: " + names);
+    warnings.add("the materials have variants; the default is shown, --variant chooses one of: " +
+                 names);
   return std::nullopt;
 }
 

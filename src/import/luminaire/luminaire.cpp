@@ -28,7 +28,7 @@ void clean_intensities(Planes& planes, const PhotometricText& text, const std::s
   }
   if (is_dark) text.fail("no intensity is above 0");
   if (negative > 0)
-    warnings.add(fmt::format("{}: {} intensities below 0 count as 0", path, negative));
+    warnings.add(fmt::format("{}: {} intensities below 0 are read as 0", path, negative));
   if (text.has_met_decimal_commas()) warnings.add(path + ": decimal commas are read as points");
 }
 

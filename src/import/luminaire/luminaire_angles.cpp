@@ -72,7 +72,8 @@ void snap_ends(std::vector<double>& angles, const char* what, const std::string&
   const double last = snapped(angles[n - 1], angles[n - 2]);
   for (const auto& [from, to] : {std::pair{angles[0], first}, {angles[n - 1], last}})
     if (std::abs(from - to) > reported_shift_deg)
-      warnings.add(fmt::format("{}: {} of {:.6g} degrees count as {:.6g}", name, what, from, to));
+      warnings.add(
+          fmt::format("{}: {} of {:.6g} degrees are read as {:.6g}", name, what, from, to));
   angles[0] = first;
   angles[n - 1] = last;
 }
@@ -83,9 +84,10 @@ void extend_to_poles(Planes& planes, const std::string& name, WarningLog& warnin
   const double step = heights[1] - first;
   if (first - from > min_gap_deg) {
     if (first - from <= std::max(max_gap_deg, zone_gap * step)) {
-      warnings.add(fmt::format(
-          "{}: vertical angles begin at {:.6g} degrees; the first intensities go on to {:.6g}",
-          name, first, from));
+      warnings.add(
+          fmt::format("{}: vertical angles begin at {:.6g} degrees; the first intensities are used "
+                      "down to {:.6g}",
+                      name, first, from));
       prepend_height(planes, from);
     } else if (is_lit_at(planes, 0)) {
       warnings.add(fmt::format(
@@ -96,8 +98,8 @@ void extend_to_poles(Planes& planes, const std::string& name, WarningLog& warnin
   if (!(to - last > min_gap_deg)) return;
   if (to - last <= zone_gap * (last - heights[heights.size() - 2])) {
     warnings.add(fmt::format(
-        "{}: vertical angles end at {:.6g} degrees; the last intensities go on to {:.6g}", name,
-        last, to));
+        "{}: vertical angles end at {:.6g} degrees; the last intensities are used up to {:.6g}",
+        name, last, to));
     append_height(planes, to);
   } else if (is_lit_at(planes, heights.size() - 1)) {
     warnings.add(fmt::format("{}: vertical angles end at {:.6g} degrees; there is no light beyond",
@@ -107,9 +109,9 @@ void extend_to_poles(Planes& planes, const std::string& name, WarningLog& warnin
 
 void extend_to_beam_axis(Planes& planes, const std::string& name, WarningLog& warnings) {
   const auto tell = [&](const char* what, double first) {
-    warnings.add(
-        fmt::format("{}: {} angles begin at {:.6g} degrees; the first intensities go on to 0", name,
-                    what, first));
+    warnings.add(fmt::format(
+        "{}: {} angles begin at {:.6g} degrees; the first intensities are used down to 0", name,
+        what, first));
   };
   if (is_near_zero(planes.vertical_angles_deg)) {
     tell("vertical", planes.vertical_angles_deg.front());

@@ -46,10 +46,10 @@ TiltFactors read_tilt(PhotometricText& text) {
 TiltFactors read_tilt_file(const std::string& path, const std::string& folder,
                            const std::string& name, WarningLog& warnings) {
   const auto leave = [&](const std::string& why) {
-    warnings.add(path + ": tilt factors of '" + name + "': " + why + "; left aside");
+    warnings.add(path + ": tilt factors of '" + name + "': " + why + "; ignored");
     return TiltFactors{};
   };
-  if (folder.empty()) return leave("no file may be named here");
+  if (folder.empty()) return leave("no other file may be named here");
   const ConfinedPath tilt = confined_path(folder, name);
   if (!tilt.is_fine()) return leave(tilt.problem);
   try {
@@ -124,9 +124,10 @@ double take_ballast_lamp_factor(PhotometricText& text, int edition, const std::s
   const double v = text.number("ballast-lamp factor", 0, 1e6);
   if (edition >= 2019) {
     if (v != 0 && !is_generation_type(v))
-      warnings.add(fmt::format(
-          "{}: {:.6g} is no file generation type of LM-63-2019; it does not multiply intensities",
-          path, v));
+      warnings.add(
+          fmt::format("{}: {:.6g} is not a file generation type of LM-63-2019; it does not "
+                      "multiply intensities",
+                      path, v));
     return 1;
   }
   if (v != 1 && v != 0 && edition >= 1995)
@@ -241,7 +242,7 @@ Luminaire read_text(const std::string& path, PhotometricText& text, const std::s
     l.tilt = read_tilt_file(path, folder, tilt, warnings);
   const Header h = read_header(text, l, labels.edition, path, warnings);
   Planes planes = read_planes(text, h, path, warnings);
-  if (h.has_zero_factor) warnings.add(path + ": factors of 0 count as 1");
+  if (h.has_zero_factor) warnings.add(path + ": factors of 0 are read as 1");
   clean_intensities(planes, text, path, warnings);
   warn_of_extra_numbers(text, path, warnings);
   if (h.type == 1)

@@ -100,7 +100,7 @@ Luminaire read_ldt(const std::string& path, std::string_view bytes, WarningLog& 
   }
   for (int i = 0; i < 10; ++i) text.number_of_line("utilisation", -1e6, 1e6);
   Planes planes = read_angles(text, symmetry, turn_count, heights, path, warnings);
-  if (!(l.lamp_lumens > 0)) text.fail("no lumens are stated, by which intensities per 1000 count");
+  if (!(l.lamp_lumens > 0)) text.fail("no lumens are stated, but intensities are per 1000 lumens");
   const double factor = l.lamp_lumens / 1000 * (conversion > 0 ? conversion : 1);
   for (size_t i = 0; i < heights * planes.horizontal_angles_deg.size(); ++i)
     planes.candela.push_back(factor *

@@ -51,7 +51,8 @@ class Unfolder {
       add_all(0, +1);
       if (last - first < 360) {
         if (first + 360 - last > 1.5 * (last - turns[turns.size() - 2]))
-          warnings_.add(name_ + ": planes do not go round; the first follows upon the last");
+          warnings_.add(name_ +
+                        ": planes do not cover the full circle; the first follows the last");
         add(first + 360, 0);
       }
     }
@@ -174,7 +175,8 @@ LightWeb unfold_beam(const Planes& planes, WebPole pole, const std::string& name
                      WarningLog& warnings) {
   if (planes.horizontal_angles_deg.size() == 1) return round_beam(planes, name);
   if (planes.vertical_angles_deg.front() == 0)
-    warnings.add(name + ": vertical angles begin at 0; what lies below the beam mirrors it");
+    warnings.add(name +
+                 ": vertical angles begin at 0; the half below the beam mirrors the half above");
   const Mirrored v = mirrored(planes.vertical_angles_deg),
                  h = mirrored(planes.horizontal_angles_deg);
   // One of the two tables runs to the pole, the other around it.

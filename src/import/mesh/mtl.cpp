@@ -234,7 +234,8 @@ void MtlReader::fix_inverted_opacity(const std::vector<std::string>& names) {
     const bool is_pictured = !library_[name].map_diffuse.file.empty();
     if (!is_unseen(name) || !(are_most || is_pictured)) continue;
     library_[name].opacity = 1;
-    warnings_.add("MTL: d 0 of materials with images, and of most, is read as opaque");
+    warnings_.add(
+        "MTL: d 0 is read as opaque for materials with images, or if most materials have it");
   }
 }
 

@@ -37,7 +37,7 @@ void set_bump(const MtlMap& map, const std::string& folder, TextureLoader& loade
     if (m.normal_texture >= 0) return;
     m.normal_texture = image;
     m.normal_scale = map.strength;
-    warnings.add("MTL: a bluish bump map is read as one of normals");
+    warnings.add("MTL: a bluish bump map is read as a normal map");
   } else if (scene.textures[size_t(image)].kind == TextureKind::image) {
     const int32_t channel = channel_of(map, 0, image, scene);
     m.bump = {map.strength * height, image, channel};
@@ -136,7 +136,7 @@ void set_data_images(const MtlMaterial& mtl, const std::string& folder, TextureL
   if (mtl.map_exponent.file.empty()) return;
   if (is_by_roughness(mtl) || m.kind != MaterialKind::metallic_roughness ||
       !(m.roughness.value > 0)) {
-    scene.warnings.add("MTL: map_Ns is for gloss by Ns: ignored");
+    scene.warnings.add("MTL: map_Ns without gloss by Ns is ignored");
     return;
   }
   FloatInput factor;
@@ -166,7 +166,7 @@ MtlConverted convert_mtl(const MtlMaterial& mtl, const std::string& folder, Text
   if (is_gloss_by_color(mtl, m))
     m.specular_color.texture = load_mtl_image(mtl.map_specular, true, folder, loader, scene);
   else if (!mtl.map_specular.file.empty())
-    warnings.add("MTL: map_Ks is for gloss of a colour Ks alone: ignored");
+    warnings.add("MTL: map_Ks is ignored unless gloss is given by Ks alone");
   if (!is_by_roughness(mtl) && (mtl.anisotropy > 0 || mtl.sheen > 0))
     warnings.add("MTL: aniso and Ps without Pr or Pm are ignored");
   set_data_images(mtl, folder, loader, scene, m);

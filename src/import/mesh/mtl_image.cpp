@@ -99,8 +99,9 @@ int32_t load_mtl_image(const MtlMap& map, bool is_color, const std::string& fold
   const ImagePlace place = place_of(map, folder);
   if (place.is_beside)
     scene.warnings.add(
-        "MTL: images that are not where they should be are taken from beside the scene");
-  if (map.is_turbulent) scene.warnings.add("MTL: -t of maps is not supported: without turbulence");
+        "MTL: images that are not found at their path are read from the scene's folder");
+  if (map.is_turbulent)
+    scene.warnings.add("MTL: -t of maps is not supported: turbulence is left out");
   const int32_t image = place.path.empty() ? loader.missing(map.file, place.problem, look)
                                            : loader.from_file(place.path, look);
   if ((map.base == 0 && map.gain == 1) || !has_texels(scene, image)) return image;

@@ -253,7 +253,7 @@ bool ObjReader::read_beside(const std::string& name) {
   const std::string path = path_beside(folder_, name);
   if (path.empty()) return false;
   scene_.warnings.add("material library '" + name.substr(0, 200) +
-                      "' cannot be read there; the one beside the scene is");
+                      "' cannot be read; the one beside the scene is used");
   read_mtl(path, "", materials_.library, scene_.warnings);
   return true;
 }
@@ -351,7 +351,7 @@ void ObjReader::finish() {
     scene_.warnings.add("OBJ: faces of fewer than three vertices are left out",
                         left_out_.short_faces);
   if (left_out_.dangling > 0)
-    scene_.warnings.add("OBJ: faces name normals or texture coordinates, but there are none",
+    scene_.warnings.add("OBJ: faces refer to normals or texture coordinates, but there are none",
                         left_out_.dangling);
   for (const auto& part : parts_.all()) finish_part(*part);
 }

@@ -61,7 +61,7 @@ std::vector<Vec3d> read_stl_text(const std::string& path, std::string_view text,
       in_facet = 0;
     } else if (!word.empty() && word != "solid" && word != "facet" && word != "outer" &&
                word != "endloop" && word != "endsolid") {
-      lines.fail("'" + std::string(word.substr(0, 40)) + "' is no word of an STL file");
+      lines.fail("'" + std::string(word.substr(0, 40)) + "' is not a keyword of STL");
     }
   }
   if (in_facet != 0) lines.fail("the file ends within a facet");
@@ -119,7 +119,7 @@ StlCorners::StlCorners(const std::string& path, std::string_view text, const Pie
   if (!fits)
     throw InputError(
         path, 0, 0,
-        "is no STL file, or is too short for its " + std::to_string(count) + " triangles");
+        "is not an STL file, or is too short for its " + std::to_string(count) + " triangles");
   if (count > max_scene_triangles) throw InputError(path, 0, 0, "has too many triangles");
   is_binary_ = true;
   count_ = size_t(count);

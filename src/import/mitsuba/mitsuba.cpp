@@ -100,9 +100,9 @@ void MitsubaReader::read_integrator(const MitsubaNode& node) {
   const double depth = get_number(node, "max_depth", node.type == "direct" ? 2 : -1);
   if (depth > 0)
     scene_.warnings.add(
-        "integrator: its depth is not obeyed: light goes on to the end; render "
-        "--method path --depth " +
-        std::to_string(int(std::min(depth, 1e6)) - 1) + " does the same");
+        "integrator: its max_depth is ignored and all bounces are computed; render --method path "
+        "--depth " +
+        std::to_string(int(std::min(depth, 1e6)) - 1) + " has the same limit");
   for (const MitsubaNode* child : node.children)
     if (child->tag == "integrator") read_integrator(*child);
 }
@@ -124,7 +124,7 @@ Rgb MitsubaReader::absorption_of(const MitsubaNode& medium) {
   const bool is_split = find_parameter(medium, "sigma_a") != nullptr;
   const Rgb absorbed = is_split ? color("sigma_a", Rgb{0}) : all * (Rgb{1} - albedo);
   const bool scatters = is_split ? !color("sigma_s", Rgb{0}).is_black() : !albedo.is_black();
-  if (scatters) scene_.warnings.add("media inside things absorb, but do not scatter");
+  if (scatters) scene_.warnings.add("media inside objects absorb but do not scatter");
   for (const char* name : {"material", "sample_emitters", "phase"}) find_parameter(medium, name);
   return usable_absorption(absorbed * scale);
 }
@@ -147,7 +147,7 @@ MitsubaReader::Attached MitsubaReader::attached_to(const MitsubaNode& node) {
     } else if (inner.tag == "medium" || inner.tag == "subsurface") {
       child->is_used = true;
       out.has_medium = out.has_medium || inner.tag == "medium";
-      scene_.warnings.add("participating media around things are not supported: left out");
+      scene_.warnings.add("participating media around objects are not supported: left out");
     }
   }
   return out;
@@ -273,7 +273,7 @@ void MitsubaReader::add_part(const MitsubaNode& node, const Affine& world, bool 
   }
   if (!material || !*shape) return;
   if (part && part->name.empty() && !with.bsdf)
-    scene_.warnings.add("materials of an OBJ file that no bsdf is named after: grey");
+    scene_.warnings.add("materials of an OBJ file without a bsdf of the same name are shown grey");
   look.material = *material;
   if (is_instance) look.shape = &**shape;
   place(**shape, world, look);

@@ -247,8 +247,7 @@ std::optional<Material> MitsubaBsdfs::bumped(const MitsubaNode& node) {
     const ColorInput normals = textures_.vector(*child);
     const bool is_upright = normals.value.r == 0.5f && normals.value.g == 0.5f;
     m->normal_texture = normals.texture;
-    if (normals.texture < 0 && !is_upright)
-      approximate(node, "without its normal, which is the same everywhere");
+    if (normals.texture < 0 && !is_upright) approximate(node, "without its constant normal");
   }
   return m;
 }

@@ -128,7 +128,7 @@ std::optional<Material> MitsubaBsdfs::coated(const MitsubaNode& node) {
                            index_of_refraction(node, "ext_ior", "air"));
   if (!exponent.is_black()) {
     absorb(*m, exponent, index);
-    approximate(node, "what its coat absorbs as a colour of what lies below");
+    approximate(node, "the coat's absorption as a colour of the base");
   }
   if (is_diffuse) {
     m->kind = MaterialKind::coated_diffuse;
@@ -141,7 +141,7 @@ std::optional<Material> MitsubaBsdfs::coated(const MitsubaNode& node) {
     approximate(node, "without its specular_reflectance");
   m->coat.value = 1;
   if (m->kind == MaterialKind::dielectric)
-    approximate(node, "over glass as a coat into which light goes straight on");
+    approximate(node, "over glass as a coat without refraction");
   if (node.type == "roughcoating") {
     Material coat;
     read_alpha(node, coat);

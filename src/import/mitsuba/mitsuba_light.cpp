@@ -65,7 +65,7 @@ class MitsubaLightReader {
     if (!p) return fallback;
     const ColorInput c = textures_.emission(*p);
     if (c.texture < 0) return c.value;
-    scene_.warnings.add(label() + "its texture is not supported: even");
+    scene_.warnings.add(label() + "its texture is not supported: shown uniform");
     return fallback;
   }
   std::string label() const { return "emitter \"" + shortened(node_.type) + "\": "; }
@@ -133,7 +133,7 @@ void MitsubaLightReader::spot() {
     if (cutoff < 90)
       project_picture(e, c.texture, std::tan(rad_from_deg(cutoff)), std::tan(rad_from_deg(cutoff)));
     else
-      scene_.warnings.add(label() + "its texture is not supported where it is 180 degrees wide");
+      scene_.warnings.add(label() + "its texture is not supported at a width of 180 degrees");
   }
   if (turn(e, world_.columns[2])) add(std::move(e));
 }

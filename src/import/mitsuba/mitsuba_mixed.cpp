@@ -80,7 +80,7 @@ std::optional<Material> MitsubaBsdfs::sum_of(const MitsubaNode& node, std::vecto
         parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.share < b.share; });
     m = *heavy->material;
     const bool is_alone = parts.size() == 1;
-    if (!is_alone) approximate(node, "by the one of its bsdfs that has more weight");
+    if (!is_alone) approximate(node, "by the bsdf with the larger weight");
     const double dimmed = heavy->share * scale;
     if (is_alone && dimmed < 1 - negligible && !scale_by(m, dimmed))
       approximate(node, "a weight below 1 as 1");
@@ -100,7 +100,7 @@ std::optional<Material> MitsubaBsdfs::blended_by(const MitsubaNode& node, const 
     return with_mask(node, *first, {1, rest.texture, 0});
   }
   if (blend_diffuse(scene_, *first, *second, weight)) return first;
-  approximate(node, "by the one of its bsdfs that has more weight");
+  approximate(node, "by the bsdf with the larger weight");
   return mean_of(scene_.textures, weight) > 0.5f ? second : first;
 }
 

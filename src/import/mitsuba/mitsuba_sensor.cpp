@@ -53,7 +53,7 @@ double set_frame(const MitsubaNode& node, const Vec3d& origin, Camera& camera,
   const double skew = std::max({std::abs(dot(x, y)) / (length(x) * length(y)),
                                 std::abs(dot(y, z)) / (length(y) * length(z)),
                                 std::abs(dot(z, x)) / (length(z) * length(x))});
-  if (skew > 1e-3) warnings.add("the sensor's transform shears: shown without");
+  if (skew > 1e-3) warnings.add("the sensor's transform shears: the shear is ignored");
   const Vec3d forward = normalize(z);
   const Vec3d up = normalize(y - forward * dot(y, forward));
   Vec3d right = cross(forward, up);

@@ -31,7 +31,7 @@ class Inflated {
   Inflated(std::span<const uint8_t> data, const std::string& path) : path_(path) {
     stream_.next_in = const_cast<Bytef*>(data.data());  // zlib does not write there
     stream_.avail_in = uInt(std::min<size_t>(data.size(), 0xffffffffu));
-    if (inflateInit(&stream_) != Z_OK) fail("cannot be expanded");
+    if (inflateInit(&stream_) != Z_OK) fail("cannot be decompressed");
   }
   ~Inflated() { inflateEnd(&stream_); }
   Inflated(const Inflated&) = delete;
@@ -84,7 +84,7 @@ T value_at(std::span<const uint8_t> file, size_t at, const std::string& path) {
 uint64_t offset_of(std::span<const uint8_t> file, size_t index, const std::string& path) {
   const auto version = value_at<uint16_t>(file, 2, path);
   if (value_at<uint16_t>(file, 0, path) != magic || (version != 3 && version != 4))
-    throw InputError(path, 0, 0, "is no serialized mesh of version 3 or 4");
+    throw InputError(path, 0, 0, "is not a serialized mesh of version 3 or 4");
   const uint64_t count = value_at<uint32_t>(file, file.size() - 4, path);
   if (index >= count)
     throw InputError(
@@ -95,7 +95,7 @@ uint64_t offset_of(std::span<const uint8_t> file, size_t index, const std::strin
   const size_t at = size_t(file.size() - 4 - (count - index) * entry);
   const uint64_t offset =
       version == 4 ? value_at<uint64_t>(file, at, path) : value_at<uint32_t>(file, at, path);
-  if (offset >= file.size()) throw InputError(path, 0, 0, "its table names places beyond its end");
+  if (offset >= file.size()) throw InputError(path, 0, 0, "its table has offsets beyond its end");
   return offset;
 }
 
@@ -141,7 +141,8 @@ SerializedMesh read_serialized(std::span<const uint8_t> file, size_t index,
   const uint64_t offset = offset_of(file, index, path);
   const auto version = value_at<uint16_t>(file, size_t(offset) + 2, path);
   if (value_at<uint16_t>(file, size_t(offset), path) != magic || (version != 3 && version != 4))
-    throw InputError(path, 0, 0, "mesh " + std::to_string(index) + " does not begin as one");
+    throw InputError(path, 0, 0,
+                     "mesh " + std::to_string(index) + " does not begin as a serialized mesh");
   Inflated in(file.subspan(size_t(offset) + 4), path);
   const auto flags = in.value<uint32_t>();
   SerializedMesh out;

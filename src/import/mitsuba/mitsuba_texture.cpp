@@ -67,7 +67,7 @@ void MitsubaTextures::set_coordinates(const MitsubaNode& node, Texture& look) {
   look.uv_rotation_rad = float(std::atan2(-x.y, x.x));
   if (std::abs(x.x * y.x + x.y * y.y) > 1e-5 * su * std::abs(sv))
     scene_.warnings.add("texture \"" + shortened(node.type) +
-                        "\": its to_uv shears: shown turned and scaled alone");
+                        "\": its to_uv shears: only rotation and scale are used");
 }
 
 int32_t MitsubaTextures::bitmap(const MitsubaNode& node) {

@@ -129,7 +129,7 @@ void MitsubaTreeReader::read_file_into(const std::string& path, const SourcePlac
     add_child(open, root, parent, depth);
   } else {
     lines.place(name, root.offset_debug())
-        .fail("is no Mitsuba scene: its first element is <" + shortened(tag) + ">, not <scene>");
+        .fail("is not a Mitsuba scene: its first element is <" + shortened(tag) + ">, not <scene>");
   }
   --open_files_;
 }
@@ -202,7 +202,7 @@ void MitsubaTreeReader::add_child(const Open& open, const pugi::xml_node& from, 
     add_path(node);
   } else {
     if (!node.id.empty() && node.tag != "ref" && !tree_.by_id_.emplace(node.id, &node).second) {
-      warnings_.add("id '" + shortened(node.id) + "' is defined again: the later one counts");
+      warnings_.add("id '" + shortened(node.id) + "' is defined again: the later one is used");
       tree_.by_id_[node.id] = &node;
     }
     to.children.push_back(&node);

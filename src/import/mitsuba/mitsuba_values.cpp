@@ -46,7 +46,7 @@ Rgb rgb_from_text(const MitsubaNode& node, const std::string& text) {
       int byte = 0;
       const char* const begin = text.data() + 1 + 2 * i;
       if (std::from_chars(begin, begin + 2, byte, 16).ptr != begin + 2)
-        node.place.fail("'" + text + "' is no colour");
+        node.place.fail("'" + text + "' is not a colour");
       c[i] = linear_from_srgb(float(byte) / 255);
     }
     return {c[0], c[1], c[2]};
@@ -166,7 +166,7 @@ std::vector<double> numbers_of(const MitsubaNode& node, const std::string& text)
     // Some writers append the f of C's float literals.
     const char* const next = result.ptr < end && *result.ptr == 'f' ? result.ptr + 1 : result.ptr;
     if (result.ec != std::errc() || !std::isfinite(value) || (next < end && !is_separator(*next)))
-      node.place.fail("'" + shortened(std::string(at, end)) + "' is no number");
+      node.place.fail("'" + shortened(std::string(at, end)) + "' is not a number");
     numbers.push_back(value);
     at = next;
   }
@@ -182,7 +182,7 @@ double get_number(const MitsubaNode& plugin, std::string_view name, double fallb
 int get_integer(const MitsubaNode& plugin, std::string_view name, int fallback) {
   const double value = get_number(plugin, name, fallback);
   if (std::abs(value) > 1e9 || value != std::floor(value))
-    plugin.place.fail("parameter '" + std::string(name) + "' is no integer");
+    plugin.place.fail("parameter '" + std::string(name) + "' is not an integer");
   return int(value);
 }
 

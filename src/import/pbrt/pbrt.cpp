@@ -159,7 +159,8 @@ void PbrtInterpreter::on_light(const PbrtToken& word, PbrtTokenizer& tokens) {
   const std::string type = parse_string(word, tokens);
   const PbrtParams params = parse_typed(word, tokens, type, "light");
   const std::string name = "light" + std::to_string(placer_.next_light_source());
-  if (open_object_) scene_.warnings.add("LightSource within an object: is there once");
+  if (open_object_)
+    scene_.warnings.add("LightSource within an object: it is not repeated by instances");
   auto light = read_pbrt_light(type, params, state_.transform,
                                materials_.textures.spectrum_context(), scene_);
   if (!light) return;
@@ -172,7 +173,7 @@ void PbrtInterpreter::on_medium_interface(const PbrtToken& word, PbrtTokenizer& 
   std::string outside = inside;
   if (tokens.peek().kind == PbrtTokenKind::string) outside = parse_string(word, tokens);
   if (!outside.empty() && outside != inside)
-    scene_.warnings.add("MediumInterface: media around things are not supported: left out");
+    scene_.warnings.add("MediumInterface: media around objects are not supported: left out");
   state_.absorption = Rgb{0};
   if (inside.empty()) return;
   const auto found = named_.media.find(inside);

@@ -51,7 +51,7 @@ double set_frame(Camera& camera, const Affine& camera_from_world, const Vec3d& o
       std::max({std::abs(dot(right, up)) / (sx * sy), std::abs(dot(up, forward)) / (sy * sz),
                 std::abs(dot(forward, right)) / (sz * sx)});
   if (differs(sx) || differs(sy) || differs(sz) || skew > 1e-3)
-    warnings.add("the camera's transform stretches or shears: shown without");
+    warnings.add("the camera's transform stretches or shears: this is ignored");
   // Makes the axes orthonormal to the last bit, with the handedness of the file.
   const Vec3d f = forward / sz;
   const Vec3d r = normalize(right - f * dot(right, f));

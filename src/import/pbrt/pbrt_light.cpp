@@ -164,8 +164,8 @@ class PbrtLightReader {
     if (v.size() % 3 == 0 && is_rectangle(p))
       return {Vec3(p[0]), Vec3(p[1]), Vec3(p[2]), Vec3(p[3])};
     context_.warnings.add(
-        "LightSource \"infinite\": its portal is no rectangle of four corners and is not used; "
-        "light comes from all directions that nothing hides");
+        "LightSource \"infinite\": its portal is not a rectangle of four corners and is ignored; "
+        "light comes from all unoccluded directions");
     return {};
   }
 
@@ -190,8 +190,7 @@ class PbrtLightReader {
     if (!is_usable(is_finite(x) && is_finite(y) && is_finite(z))) return false;
     if (length(normalize(c[1]) - y) > 1e-3 || std::abs(dot(normalize(c[0]), z)) > 1e-3)
       context_.warnings.add(
-          "light of an image under a transform that is more than a rotation: shown "
-          "unbent");
+          "image light whose transform is more than a rotation: only the rotation is used");
     e.axes = {Vec3(x), Vec3(y), Vec3(z)};
     return true;
   }

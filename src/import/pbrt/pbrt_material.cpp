@@ -61,7 +61,7 @@ Rgb PbrtMaterials::read_medium(const std::string& type, const PbrtParams& params
   params.ignore({"type"});
   if (!scattered.is_black())
     scene_.warnings.add(
-        "MakeNamedMedium: \"homogeneous\": what it absorbs is shown, not what it scatters");
+        "MakeNamedMedium: \"homogeneous\": its absorption is shown, its scattering is not");
   params.warn_unread(scene_.warnings);
   return usable_absorption(absorbed * scale);
 }
@@ -144,7 +144,7 @@ Material PbrtMaterials::make_mix(const PbrtMaterial& material) {
   if (blend_diffuse(scene_, first, second, amount)) return first;
   const float share = mean_of(scene_.textures, amount);
   if (amount.texture >= 0 || (share > 0 && share < 1))
-    scene_.warnings.add("material \"mix\": the one of more weight is shown alone");
+    scene_.warnings.add("material \"mix\": only the one with the larger weight is shown");
   return share < 0.5f ? first : second;
 }
 

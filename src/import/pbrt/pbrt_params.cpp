@@ -107,7 +107,7 @@ void add_value(PbrtParam& param, const PbrtToken& token, const PbrtTokenizer& to
     param.strings.push_back(unescaped(token.text));
   } else {
     fail_at(tokens.place(token), "'" + std::string(token.text.substr(0, 40)) +
-                                     "' is no value for the " + type_name(param.type) +
+                                     "' is not a value for the " + type_name(param.type) +
                                      " parameter " + in_quotes(param.name));
   }
 }

@@ -80,7 +80,7 @@ bool PbrtTextures::make_pattern(Named& texture, const std::string& name) {
     set_operands(texture, "tex1", "tex2", t);
     t.amount = {Rgb{0.5f}, no_texture};
     params.ignore({"dir"});
-    scene_.warnings.add("texture \"directionmix\": half of each, whatever the direction");
+    scene_.warnings.add("texture \"directionmix\": shown as half of each in all directions");
   } else if (kind == "fbm" || kind == "wrinkled" || kind == "windy" || kind == "marble") {
     t.kind = kind == "fbm"        ? TextureKind::fbm
              : kind == "wrinkled" ? TextureKind::wrinkled

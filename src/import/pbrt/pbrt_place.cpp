@@ -202,8 +202,8 @@ void PbrtPlacer::set_normal_map(Mesh& mesh) {
   const size_t turned = count_turned(mesh), all = mesh.triangles.size();
   if (turned > 0 && turned < all)
     scene_.warnings.add(
-        "a normal map on triangles whose texture coordinates run both ways: its y is that of the "
-        "larger part");
+        "a normal map on triangles with mirrored and unmirrored texture coordinates: its y follows "
+        "the larger part");
   if (2 * turned > all) mesh.material = materials_.with_flipped_normal_map(mesh.material);
 }
 

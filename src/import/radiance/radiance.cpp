@@ -68,7 +68,8 @@ void RadianceReader::read_views() {
 void RadianceReader::read_file(const std::string& path, const Shown& shown,
                                const SourcePlace* from) {
   const SourcePlace top{std::make_shared<const std::string>(path), 0, 0};
-  if (open_files_ >= max_open_files) (from ? *from : top).fail("files show each other without end");
+  if (open_files_ >= max_open_files)
+    (from ? *from : top).fail("files include each other endlessly");
   std::shared_ptr<const std::string>& text = texts_[path];
   if (!text) text = std::make_shared<const std::string>(read_text_file(path, max_radiance_bytes));
   bytes_ += text->size();
@@ -92,7 +93,7 @@ void RadianceReader::read_statement(RadianceText& text, const std::string& first
   p.place = text.place();
   p.world = shown.world;
   for (const char c : first)
-    if (static_cast<unsigned char>(c) < 32) p.place.fail("this is no text");
+    if (static_cast<unsigned char>(c) < 32) p.place.fail("this is not a text file");
   if (first == "!") {
     run(text.command(), shown, p.place);
     return;
@@ -109,7 +110,7 @@ void RadianceReader::read_statement(RadianceText& text, const std::string& first
   }
   const bool is_surface = RadianceSurfaces::is_surface(p.type);
   if (!is_surface && !RadianceMaterials::is_modifier(p.type))
-    p.place.fail("'" + shortened(p.type) + "' is no type of Radiance's");
+    p.place.fail("'" + shortened(p.type) + "' is not a Radiance type");
   p.arguments = text.arguments();
   if (!is_surface) {
     materials_.define(name, std::move(p));

@@ -56,7 +56,7 @@ std::optional<double> CalProgram::value(int32_t expression, const CalRay& ray) {
 
 double CalProgram::evaluate(const CalNode& node, const Activation* in) {
   if (!problem_.empty()) return 0;
-  if (++steps_ > max_steps || depth_ > max_depth) return fail("it does not come to an end");
+  if (++steps_ > max_steps || depth_ > max_depth) return fail("it does not end");
   ++depth_;
   const auto child = [&](size_t i) { return evaluate(nodes_[size_t(node.children[i])], in); };
   double v = 0;
@@ -158,7 +158,7 @@ double CalProgram::call(const CalNode& node, const Activation* in) {
       at = at->outer;
     }
     if (passed == nullptr || passed->op != CalOp::name)
-      return fail("what is called is no function");
+      return fail("something that is not a function is called");
     name = passed->index;
   }
   const Definition& d = names_[size_t(name)];

@@ -159,7 +159,7 @@ int32_t CalParser::single() {
 int32_t CalParser::number() {
   double value = 0;
   const auto r = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-  if (r.ec != std::errc()) fail("this is no number");
+  if (r.ec != std::errc()) fail("this is not a number");
   at_ = size_t(r.ptr - text_.data());
   return add({CalOp::number, value, 0, {}});
 }

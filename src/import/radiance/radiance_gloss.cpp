@@ -113,7 +113,8 @@ Material solid_glass(const RadianceModifier& m, WarningLog& warnings) {
 // reflection and transmission, which is shown diffuse.
 Material translucent_by_function(const RadianceModifier& m, WarningLog& warnings) {
   const std::vector<double>& v = m.arguments.reals;
-  warnings.add("\"" + m.type + "\": what its function shapes is shown diffuse");
+  warnings.add("\"" + m.type +
+               "\": reflection and transmission shaped by its function are shown diffuse");
   const auto rest = float(1 - std::clamp(v[3], 0.0, 1.0)),
              trans = float(std::clamp(v[4], 0.0, 1.0));
   return even_sheet(rgb_at(v) * (1 - rest * trans), rgb_at(v) * (rest * trans));
@@ -127,8 +128,7 @@ Material by_functions(const RadianceModifier& m, WarningLog& warnings) {
   for (size_t i = 0; i < std::min<size_t>(9, strings.size()); ++i)
     is_diffuse = is_diffuse && strings[i].find_first_not_of("0.") == std::string::npos;
   if (!is_diffuse)
-    warnings.add("\"" + m.type +
-                 "\": only its diffuse parts are shown, not what its functions say");
+    warnings.add("\"" + m.type + "\": only its diffuse parts are shown; its functions are ignored");
   if (rgb_at(v) != rgb_at(v, 3))
     warnings.add("\"" + m.type + "\": its back is shown with the diffuse reflectance of its front");
   return even_sheet(rgb_at(v), rgb_at(v, 6));
@@ -152,7 +152,8 @@ Material radiance_material(const RadianceModifier& m, WarningLog& warnings) {
   const std::vector<double>& v = m.arguments.reals;
   const std::string& type = m.type;
   const auto mean_roughness = [&] {
-    warnings.add("\"" + type + "\": roughness along its two axes as their geometric mean");
+    warnings.add("\"" + type +
+                 "\": roughness along its two axes is replaced by the geometric mean");
     return std::sqrt(std::max(v[4], 0.0) * std::max(v[5], 0.0));
   };
   if (type == "plastic" || type == "metal") return glossy(v, v[4], type == "metal");

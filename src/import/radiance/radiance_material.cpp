@@ -74,7 +74,7 @@ RadianceMaterials::Modifier RadianceMaterials::material_of(std::string name,
       return m;
     }
   }
-  place.fail("modifiers refer to each other without end");
+  place.fail("modifiers refer to each other endlessly");
 }
 
 const RadianceLook& RadianceMaterials::look_of(const std::string& name, const SourcePlace& place) {
@@ -84,7 +84,7 @@ const RadianceLook& RadianceMaterials::look_of(const std::string& name, const So
   if (name == "void") {
     look.is_there = false;
   } else {
-    if (++open_looks_ > max_chain) place.fail("modifiers refer to each other without end");
+    if (++open_looks_ > max_chain) place.fail("modifiers refer to each other endlessly");
     const Modifier m = material_of(name, place);
     const int needed = least_radiance_reals(m->type);
     if (is_mixture(m->type)) {
@@ -152,15 +152,15 @@ Rgb RadianceMaterials::constant_part(const std::vector<Modifier>& patterns, bool
           product *= *same;
           continue;
         }
-        why = "varies from place to place";
+        why = "varies over the surface";
       } catch (const InputError& e) {
         why = "cannot be evaluated (" + e.reason() + ")";
       }
     }
     scene_.warnings.add(
         "\"" + shortened(p->type) + "\" " + why + ": its " +
-        (is_light ? "lights shine evenly (--luminaire NAME=FILE.ies gives them a distribution)"
-                  : "materials are shown without"));
+        (is_light ? "lights shine uniformly (--luminaire NAME=FILE.ies gives them a distribution)"
+                  : "materials are shown without it"));
   }
   return product;
 }
@@ -199,8 +199,8 @@ RadianceLook RadianceMaterials::convert(const std::string& name, const RadianceM
   // alternate.
   if (m.type == "mirror" && !m.arguments.strings.empty()) {
     scene_.warnings.add(
-        "\"mirror\" with an alternate material is shown as that one: sunlight and lamplight that "
-        "it would throw on other surfaces are left out");
+        "\"mirror\" with an alternate material is shown as that material: sunlight and lamplight "
+        "that it would reflect onto other surfaces are left out");
     return look_of(m.arguments.strings[0], m.place);
   }
   Material material;

@@ -32,7 +32,7 @@ double RadianceMaterials::foreground_share(const RadianceModifier& m) {
   double sum = 0;
   for (int i = 0; i < samples; ++i)
     sum += std::clamp(function.values({{0, 0, -1}, {0, 0, 1}, sample_point(i)})[0], 0.0, 1.0);
-  scene_.warnings.add("\"mixfunc\" varies from place to place: its mean is shown everywhere");
+  scene_.warnings.add("\"mixfunc\" varies over the surface: its mean is shown everywhere");
   return sum / samples;
 }
 
@@ -66,8 +66,8 @@ RadianceLook RadianceMaterials::mix(const std::string& name, const RadianceModif
     const FloatInput others{float(is_front ? 1 - share : share), no_texture, 0};
     if (!blend_diffuse(scene_, material, other, others))
       scene_.warnings.add(
-          "\"mixfunc\" of materials that are not diffuse is shown as the one that "
-          "has more of the surface");
+          "\"mixfunc\" of materials that are not diffuse is shown as the one that covers more of "
+          "the surface");
   } else {  // holes
     material.is_alpha_masked = material.is_alpha_blended = true;
     material.alpha.value = float(front.is_there ? share : 1 - share);

@@ -86,8 +86,8 @@ void add_radiance_spot(const RadianceLook& look, const std::string& name,
   if (!(tilt > 0)) return;
   if (tilt < 0.999)
     scene.warnings.add(
-        "\"spotlight\" that leaves its surface at a slant: its cosine from the "
-        "surface's normal is taken along the beam's axis");
+        "\"spotlight\" whose beam is oblique to its surface: its cosine is taken from the beam's "
+        "axis instead of the normal");
   Light e;
   e.name = name;
   e.kind = LightKind::point;
@@ -101,7 +101,7 @@ void add_radiance_spot(const RadianceLook& look, const std::string& name,
     return;
   e.web = int32_t(scene.webs.size());
   scene.webs.push_back(beam(rad_from_deg(look.spot_angle_deg) / 2, flat > 0, name));
-  scene.warnings.add("\"spotlight\" is approximated: a spot without extent at its middle");
+  scene.warnings.add("\"spotlight\" is approximated by a point spot at its centre");
   scene.lights.push_back(std::move(e));
 }
 

@@ -168,7 +168,7 @@ void RadianceSurfaces::add_source(const RadianceModifier& p, const std::string& 
   RadiancePattern pattern = materials_.pattern_of(look);
   RadiancePattern* const used = pattern.functions.empty() ? nullptr : &pattern;
   if (look.is_spot)
-    scene_.warnings.add("\"spotlight\" on a source shines everywhere, not within its beam alone");
+    scene_.warnings.add("\"spotlight\" on a source shines everywhere, not only within its beam");
   if (add_radiance_source(look, used, normalize(to), angle, name, scene_)) return;
   scene_.warnings.add("source '" + shortened(name) + "' cannot be used: left out");
 }

@@ -23,7 +23,7 @@ double radiance_number(const std::string& word, const SourcePlace& place) {
   double value = 0;
   const auto result = std::from_chars(begin, end, value);
   if (result.ec != std::errc() || result.ptr != end || !std::isfinite(value))
-    place.fail(word.empty() ? "a number is missing" : "'" + shortened(word) + "' is no number");
+    place.fail(word.empty() ? "a number is missing" : "'" + shortened(word) + "' is not a number");
   return value;
 }
 

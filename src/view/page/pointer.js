@@ -3,10 +3,10 @@
 
 const tool = () => document.querySelector('input[name=tool]:checked').value;
 const hints = {
-  orbit: 'Drag to turn around the room. Wheel or pinch to come nearer. Shift or two fingers to move sideways.',
-  walk: 'Drag to look around. W A S D or arrow keys to walk, Q and E to go down and up.',
+  orbit: 'Drag to orbit the room. Scroll or pinch to move closer. Hold Shift or use two fingers to move sideways.',
+  walk: 'Drag to look around. Press W A S D or the arrow keys to walk, Q and E to move down and up.',
   point: 'Click a surface to measure its illuminance.',
-  grid: 'Drag from one corner of a flat surface to the opposite one to measure a grid.',
+  grid: 'Drag from one corner of a flat surface to the opposite corner to measure a grid.',
 };
 function placeOf(event) {
   const r = $('overlay').getBoundingClientRect();

@@ -90,11 +90,11 @@ function draw() {
     const isError = beside === 'error', second = isError ? picture : fitted(app.layers.second, width, height);
     const side = second && drawSide(second, isError ? 'error' : kind, image.data, split, width);
     app.besideText = isError ? (side ? `estimated error, up to ${side.most} %` : 'estimated error: not known yet')
-      : second ? `by ${beside}` : `${beside}: not ready yet`;
+      : second ? `method ${beside}` : `method ${beside}: not ready yet`;
   }
   g.putImageData(image, 0, 0);
   if (app.map) drawLegend($('legend'), app.map.most, $('log').checked, unitOf(kind));
-  $('scale-note').textContent = kind !== 'picture' && !app.map ? 'The values follow when the picture has been refined.' : '';
+  $('scale-note').textContent = kind !== 'picture' && !app.map ? 'Values appear when the picture has been refined.' : '';
   drawOverlay();
 }
 
@@ -244,7 +244,7 @@ function showStatus(state) {
   if (error > 0 && !areDimmed()) parts.push(`estimated error ${(100 * error).toPrecision(2)} %`);
   $('status').textContent = parts.join(' · ');
   $('dimmers-note').textContent = areDimmed() && app.dimmers.length > 1 && !currentPicture()
-    ? 'The picture under these settings is being made.' : '';
+    ? 'The picture with these settings is being rendered.' : '';
 }
 
 // Reports that the program has ended and how to start it again, and disables all controls.
