@@ -1,19 +1,31 @@
 # What `cmake --install` and `cpack` hand out: the program with its manual and completion, the
-# library as troffer::<room> with headers (find_package(troffer)), the Python module.
+# library as troffer::troffer with its headers (find_package(troffer)), the Python module.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 install(TARGETS troffer)
-foreach(_room IN LISTS TROFFER_ROOMS)
-  if(_room MATCHES "^(app|python|view|mpi)$")
-    continue()
-  endif()
-  set_target_properties(troffer_${_room} PROPERTIES EXPORT_NAME ${_room})
+# The library: the headers of the facade, and the static libraries behind it. Other projects link
+# troffer::troffer; the rooms below it are exported because static libraries need them, under names
+# that promise nothing.
+set(_linked api)
+set(_next api)
+while(_next)
+  list(POP_FRONT _next _room)
+  foreach(_use IN LISTS TROFFER_USES_${_room})
+    if(NOT _use IN_LIST _linked)
+      list(APPEND _linked ${_use})
+      list(APPEND _next ${_use})
+    endif()
+  endforeach()
+endwhile()
+foreach(_room IN LISTS _linked)
+  set_target_properties(troffer_${_room} PROPERTIES EXPORT_NAME private_${_room})
   install(TARGETS troffer_${_room} EXPORT troffer-targets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/troffer)
-  install(DIRECTORY ${CMAKE_SOURCE_DIR}/src/${_room} DESTINATION include/troffer
-    FILES_MATCHING PATTERN "*.h")
 endforeach()
+set_target_properties(troffer_api PROPERTIES EXPORT_NAME troffer)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/include/troffer DESTINATION include
+  FILES_MATCHING PATTERN "*.h")
 set(_package ${CMAKE_INSTALL_LIBDIR}/cmake/troffer)
 install(EXPORT troffer-targets NAMESPACE troffer:: DESTINATION ${_package})
 configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/troffer-config.cmake.in
@@ -45,6 +57,7 @@ if(TROFFER_MPI)
 endif()
 if(TROFFER_PYTHON)
   install(TARGETS troffer_module DESTINATION lib/python3/dist-packages)
+  install(FILES ${CMAKE_SOURCE_DIR}/src/python/troffer.pyi DESTINATION lib/python3/dist-packages)
 endif()
 install(FILES ${CMAKE_SOURCE_DIR}/LICENSE ${CMAKE_SOURCE_DIR}/README.md
   DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -1,39 +1,13 @@
-// The three kinds of failure that end a command, and CHECK for bugs.
+// The three kinds of failure that end a command (troffer/error.h), and CHECK for bugs.
 #pragma once
 
 #include <cstddef>
 #include <stdexcept>
 #include <string>
 
+#include "troffer/error.h"
+
 namespace troffer {
-
-// A file that cannot be used as it is. Thrown by readers, caught once in app/, printed as
-// "error: FILE:LINE:COLUMN: what". Line and column count from 1; 0 = the file as a
-// whole, printed as 1:1.
-class InputError : public std::runtime_error {
- public:
-  InputError(std::string file, int line, int column, std::string what);
-  const std::string& file() const { return file_; }
-  const std::string& reason() const { return reason_; }
-  int line() const { return line_; }
-  int column() const { return column_; }
-
- private:
-  std::string file_, reason_;
-  int line_, column_;
-};
-
-// The world around us failed: cannot write, disk full, out of memory.
-class EnvironmentError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-// The command line asks for something that does not exist (exit status 2).
-class UsageError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 // Prints the failed condition, where, and what this thread was working on, then aborts.
 [[noreturn]] void check_failed(const char* condition, const char* file, int line);

@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include <cctype>
 #include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-
-namespace troffer {
+namespace troffer::bindings {
 
 namespace py = pybind11;
 
@@ -67,7 +64,8 @@ std::vector<std::string> path_and_numbers(const py::handle& value, size_t most,
 // A datetime, or its text.
 std::string moment(const py::handle& value) {
   if (!py::hasattr(value, "isoformat")) return text(value, "at: its time is a text or a datetime");
-  if (value.attr("utcoffset")().is_none()) throw UsageError("at: a datetime must have a time zone");
+  if (value.attr("utcoffset")().is_none())
+    throw api::UsageError("at: a datetime must have a time zone");
   return value.attr("isoformat")(py::arg("timespec") = "seconds").cast<std::string>();
 }
 
@@ -122,7 +120,7 @@ std::vector<std::string> luminaires(const py::handle& value) {
   for (const auto& [name, file] : py::reinterpret_borrow<py::dict>(value)) {
     const std::string node = text(name, expected);
     if (node.find('=') != std::string::npos)
-      throw UsageError("luminaires: a name with '=' cannot be told from its file");
+      throw api::UsageError("luminaires: a name with '=' cannot be told from its file");
     all.push_back(node + "=" + joined(path_and_numbers(file, 2, expected)));
   }
   return all;
@@ -131,14 +129,14 @@ std::vector<std::string> luminaires(const py::handle& value) {
 double in_range(const py::handle& value, double least, double most, const char* what) {
   const auto v = py::float_(py::reinterpret_borrow<py::object>(value)).cast<double>();
   if (!(v >= least && v <= most))
-    throw UsageError(fmt::format("{} lies between {} and {}", what, least, most));
+    throw api::UsageError(fmt::format("{} lies between {} and {}", what, least, most));
   return v;
 }
 
-using Taker = std::function<void(DaylightOptions&, const py::handle&)>;
+using Taker = std::function<void(api::AddedLight&, const py::handle&)>;
 
 const std::map<std::string, Taker>& takers() {
-  using O = DaylightOptions;
+  using O = api::AddedLight;
   using V = const py::handle&;
   static const std::map<std::string, Taker> all{
       {"sky", [](O& o, V v) { o.sky = text(v, "sky: a text"); }},
@@ -147,13 +145,11 @@ const std::map<std::string, Taker>& takers() {
       {"turbidity", [](O& o, V v) { o.turbidity = in_range(v, 1, 10, "turbidity"); }},
       {"weather", [](O& o, V v) { o.weather = path(v); }},
       {"date", [](O& o, V v) { o.date = date(v); }},
-      {"north", [](O& o, V v) { o.north_deg = in_range(v, -360, 360, "north"); }},
+      {"north", [](O& o, V v) { o.north = in_range(v, -360, 360, "north"); }},
       {"ground", [](O& o, V v) { o.ground = in_range(v, 0, 1, "ground"); }},
       {"environment", [](O& o, V v) { o.environment = environment(v); }},
       {"environment_rotation",
-       [](O& o, V v) {
-         o.environment_rotation_deg = in_range(v, -360, 360, "environment_rotation");
-       }},
+       [](O& o, V v) { o.environment_rotation = in_range(v, -360, 360, "environment_rotation"); }},
       {"portal", [](O& o, V v) { o.portals = portals(v); }},
       {"luminaires", [](O& o, V v) { o.luminaires = luminaires(v); }},
       {"luminaire_list", [](O& o, V v) { o.luminaire_list = path(v); }},
@@ -165,35 +161,15 @@ const std::map<std::string, Taker>& takers() {
 
 }  // namespace
 
-DaylightOptions daylight_options(const py::kwargs& asked) {
-  DaylightOptions o;
+api::AddedLight added_light(const py::kwargs& asked) {
+  api::AddedLight o;
   for (const auto& [key, value] : asked) {
     const auto name = py::cast<std::string>(key);
     const auto taker = takers().find(name);
     if (taker == takers().end()) throw py::type_error("add_light() has no argument '" + name + "'");
     if (!value.is_none()) taker->second(o, value);
   }
-  const bool is_asked = !o.sky.empty() || !o.sun.empty() || !o.at.empty() || !o.weather.empty();
-  if (!is_asked) o.sky = "none";
   return o;
-}
-
-std::string in_script_words(const std::string& message) {
-  std::string out;
-  bool is_option = false;
-  for (size_t i = 0; i < message.size(); ++i) {
-    const auto letter = [&](size_t k) {
-      return k < message.size() && std::isalpha(static_cast<unsigned char>(message[k])) != 0;
-    };
-    if (message.compare(i, 2, "--") == 0 && letter(i + 2)) {
-      is_option = true;
-      ++i;
-      continue;
-    }
-    is_option = is_option && (letter(i) || (message[i] == '-' && letter(i + 1)));
-    out += is_option && message[i] == '-' ? '_' : message[i];
-  }
-  return out;
 }
 
 const char* const add_light_help =
@@ -218,4 +194,4 @@ const char* const add_light_help =
     "up: (x, y, z)\n\n"
     "If it raises, the scene is as it was. ValueError, TypeError, InputError for files.";
 
-}  // namespace troffer
+}  // namespace troffer::bindings

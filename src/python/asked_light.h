@@ -1,21 +1,18 @@
-// What a script asks for in light, in the words of the program's options.
+// Scene.add_light(): keyword arguments as the façade's AddedLight.
 #pragma once
 
 #include <pybind11/pybind11.h>
 
-#include "lighting/daylight_options.h"
+#include "troffer/light.h"
+#include "troffer/scene.h"
 
-namespace troffer {
+namespace troffer::bindings {
 
-// The keyword arguments of Scene.add_light() as DaylightOptions, bit for bit what they would be if
-// typed. What nobody asked for stays dark. TypeError for what is of another kind, UsageError for
-// what has no meaning.
-DaylightOptions daylight_options(const pybind11::kwargs& asked);
+// The arguments in the words of the program's options. TypeError for values of the wrong type,
+// UsageError for values without meaning.
+api::AddedLight added_light(const pybind11::kwargs& asked);
 
-// A message about options in a script's words: "--some-option" is some_option.
-std::string in_script_words(const std::string& message);
-
-// What help() says of them.
+// The text of help(Scene.add_light).
 extern const char* const add_light_help;
 
-}  // namespace troffer
+}  // namespace troffer::bindings
