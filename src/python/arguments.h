@@ -26,22 +26,10 @@ T taken(const pybind11::handle& value, const std::string& name) {
 
 // Strict: True or False, not any object that has a truth value.
 template <>
-inline bool taken<bool>(const pybind11::handle& value, const std::string& name) {
-  pybind11::detail::make_caster<bool> caster;
-  if (!caster.load(value, false))
-    throw pybind11::type_error("argument '" + name + "' is True or False");
-  return pybind11::detail::cast_op<bool>(caster);
-}
+bool taken<bool>(const pybind11::handle& value, const std::string& name);
 
 // Three numbers, or one for all channels.
-inline api::Color color_taken(const pybind11::handle& value, const std::string& name) {
-  if (pybind11::isinstance<pybind11::float_>(value) ||
-      pybind11::isinstance<pybind11::int_>(value)) {
-    const auto grey = taken<float>(value, name);
-    return {grey, grey, grey};
-  }
-  return taken<api::Color>(value, name);
-}
+api::Color color_taken(const pybind11::handle& value, const std::string& name);
 
 // One function per argument, which sets a part of the options.
 template <class Options>
