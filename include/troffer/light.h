@@ -2,6 +2,7 @@
 /// Light for scenes: what surfaces emit, lamps without a surface, skies, measured luminaires.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>

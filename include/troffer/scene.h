@@ -2,6 +2,7 @@
 /// Scenes: loaded from files or built from arrays, and changed between pictures.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>

@@ -14,7 +14,7 @@ namespace py = pybind11;
 
 namespace {
 
-// Of a str or an os.PathLike.
+// The path that a str or an os.PathLike holds.
 std::string path(const py::handle& value) {
   return py::module_::import("os").attr("fspath")(value).cast<std::string>();
 }
@@ -24,7 +24,7 @@ std::string text(const py::handle& value, const char* expected) {
   return value.cast<std::string>();
 }
 
-// The shortest text that reads as this very number.
+// The shortest text that reads as the same number.
 std::string number(const py::handle& value) {
   return fmt::format("{}", py::float_(py::reinterpret_borrow<py::object>(value)).cast<double>());
 }
@@ -33,7 +33,7 @@ std::string joined(const std::vector<std::string>& parts) {
   return fmt::format("{}", fmt::join(parts, ","));
 }
 
-// Items that are not one text.
+// Items of a sequence; a text is none.
 std::vector<py::object> items(const py::handle& value, const char* expected) {
   if (py::isinstance<py::str>(value) || !py::hasattr(value, "__iter__"))
     throw py::type_error(expected);
@@ -48,7 +48,7 @@ std::string numbers(const py::handle& value, const char* expected) {
   return joined(parts);
 }
 
-// A path, or (path, numbers…) of which at most `most`.
+// A path, or (path, numbers…) with at most `most` numbers.
 std::vector<std::string> path_and_numbers(const py::handle& value, size_t most,
                                           const char* expected) {
   if (!py::isinstance<py::tuple>(value) && !py::isinstance<py::list>(value)) return {path(value)};
@@ -61,7 +61,7 @@ std::vector<std::string> path_and_numbers(const py::handle& value, size_t most,
   return parts;
 }
 
-// A datetime, or its text.
+// A datetime or its text.
 std::string moment(const py::handle& value) {
   if (!py::hasattr(value, "isoformat")) return text(value, "at: its time is a text or a datetime");
   if (value.attr("utcoffset")().is_none())
@@ -90,7 +90,7 @@ std::string portal(const py::handle& value) {
   return joined(corners);
 }
 
-// One or several: of several, what the first one holds is no number.
+// One portal or several. The first item of several holds no number.
 std::vector<std::string> portals(const py::handle& value) {
   if (py::isinstance<py::str>(value)) return {portal(value)};
   const std::vector<py::object> all = items(value, "portal: a name, or four corners (x, y, z)");
@@ -107,7 +107,7 @@ std::vector<std::string> portals(const py::handle& value) {
 std::string environment(const py::handle& value) {
   std::vector<std::string> parts =
       path_and_numbers(value, 1, "environment: a path, or (path, scale)");
-  // So that a comma in the file's name is not taken for the one before a scale.
+  // A scale at the end keeps a comma in the file's name from being read as the one before a scale.
   if (parts.size() == 1) parts.emplace_back("1");
   return joined(parts);
 }

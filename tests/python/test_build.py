@@ -2,6 +2,7 @@
 import ast
 import inspect
 import pathlib
+import tempfile
 import unittest
 
 import numpy as np
@@ -73,6 +74,24 @@ class Building(unittest.TestCase):
                 e.dimmer = float(e.name == name)
             found = scene.measure([[0, 0, 1e-4, 0, 0, 1]]).illuminance[0]
             self.assertAlmostEqual(found / lux, 1, delta=3e-3, msg=name)
+
+    def test_luminaire_of_a_file(self):
+        """A point whose intensity falls as the cosine: lumens / pi straight down."""
+        angles = np.arange(0, 91)
+        candela = ' '.join(f'{v:.6f}' for v in np.cos(np.radians(angles)) * 300 / np.pi)
+        text = (f'IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 91 1 1 2 0 0 0\n1 1 25\n'
+                f'{" ".join(str(a) for a in angles)}\n0\n{candela}\n')
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / 'cosine.ies'
+            file.write_text(text)
+            for options, factor in (({}, 1), (dict(dimming=.5), .5), (dict(lumens=600), 2),
+                                    (dict(nadir=(0, 1, -1)), .5 ** .5)):
+                scene = troffer.Scene()
+                scene.add_mesh(floor(), QUAD)
+                scene.add_luminaire('lamp', file, (0, 0, 2), **options)
+                found = scene.measure([[0, 0, 1e-4, 0, 0, 1]]).illuminance[0]
+                self.assertAlmostEqual(found / (300 / np.pi / 4 * factor), 1, delta=.02,
+                                       msg=str(options))
 
     def test_surroundings(self):
         scene = troffer.Scene()
@@ -213,6 +232,24 @@ class Stub(unittest.TestCase):
             told = getattr(troffer.Scene, f.name).__doc__.split('\n')[0]
             for a in f.args.args[1:] + f.args.kwonlyargs:
                 self.assertIn(a.arg + ':', told, f.name)
+
+
+    def test_has_the_keywords(self):
+        tree = ast.parse((ROOT / 'src/python/troffer.pyi').read_text())
+        classes = {n.name: n for n in tree.body if isinstance(n, ast.ClassDef)}
+        scene = troffer.Scene()
+        for name, call in (('_RenderOptions', scene.render),
+                           ('_LightOptions', lambda **k: scene.render(**k)),
+                           ('_LightOptions', lambda **k: scene.measure([[0, 0, 0]], **k)),
+                           ('_MaterialOptions', lambda **k: scene.add_material('m', **k))):
+            for member in classes[name].body:
+                key = member.target.id
+                if key == 'progress':
+                    continue
+                with self.assertRaises(TypeError, msg=key) as caught:
+                    call(**{key: object()})
+                self.assertNotIn('no argument', str(caught.exception))
+                self.assertIn(key, call.__doc__ or key)
 
 
 if __name__ == '__main__':
