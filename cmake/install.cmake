@@ -1,19 +1,31 @@
-# Files of `cmake --install` and `cpack`: the program with manual and completion, the library as
-# troffer::<room> with headers (find_package(troffer)), the Python module.
+# What `cmake --install` and `cpack` hand out: the program with its manual and completion, the
+# library as troffer::troffer with its headers (find_package(troffer)), the Python module.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 install(TARGETS troffer)
-foreach(_room IN LISTS TROFFER_ROOMS)
-  if(_room MATCHES "^(app|python|view|mpi)$")
-    continue()
-  endif()
-  set_target_properties(troffer_${_room} PROPERTIES EXPORT_NAME ${_room})
+# The library: the headers of the facade, and the static libraries behind it. Other projects link
+# troffer::troffer; the rooms below it are exported because static libraries need them, under names
+# that promise nothing.
+set(_linked api)
+set(_next api)
+while(_next)
+  list(POP_FRONT _next _room)
+  foreach(_use IN LISTS TROFFER_USES_${_room})
+    if(NOT _use IN_LIST _linked)
+      list(APPEND _linked ${_use})
+      list(APPEND _next ${_use})
+    endif()
+  endforeach()
+endwhile()
+foreach(_room IN LISTS _linked)
+  set_target_properties(troffer_${_room} PROPERTIES EXPORT_NAME private_${_room})
   install(TARGETS troffer_${_room} EXPORT troffer-targets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/troffer)
-  install(DIRECTORY ${CMAKE_SOURCE_DIR}/src/${_room} DESTINATION include/troffer
-    FILES_MATCHING PATTERN "*.h")
 endforeach()
+set_target_properties(troffer_api PROPERTIES EXPORT_NAME troffer)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/include/troffer DESTINATION include
+  FILES_MATCHING PATTERN "*.h")
 set(_package ${CMAKE_INSTALL_LIBDIR}/cmake/troffer)
 install(EXPORT troffer-targets NAMESPACE troffer:: DESTINATION ${_package})
 configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/troffer-config.cmake.in
@@ -23,7 +35,7 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/troffer-config-version.cmak
 install(FILES ${CMAKE_BINARY_DIR}/troffer-config.cmake
   ${CMAKE_BINARY_DIR}/troffer-config-version.cmake DESTINATION ${_package})
 
-# Manual pages and completion come from the program's own help.
+# Manual pages and completion say what the program says of itself.
 if(Python_Interpreter_FOUND)
   set(_manual ${CMAKE_BINARY_DIR}/manual)
   add_custom_command(OUTPUT ${_manual}/troffer.1
@@ -41,10 +53,11 @@ if(Python_Interpreter_FOUND)
     DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()
 if(TROFFER_MPI)
-  install(TARGETS troffer-mpi COMPONENT mpi)  # a separate package, since only its users need MPI
+  install(TARGETS troffer-mpi COMPONENT mpi)  # a package of its own: nobody else needs MPI
 endif()
 if(TROFFER_PYTHON)
   install(TARGETS troffer_module DESTINATION lib/python3/dist-packages)
+  install(FILES ${CMAKE_SOURCE_DIR}/src/python/troffer.pyi DESTINATION lib/python3/dist-packages)
 endif()
 install(FILES ${CMAKE_SOURCE_DIR}/LICENSE ${CMAKE_SOURCE_DIR}/README.md
   DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -8,7 +8,7 @@ troffer_packages="
   libfmt-dev libcli11-dev nlohmann-json3-dev libpugixml-dev libmicrohttpd-dev
   libdraco-dev libmeshoptimizer-dev
   pybind11-dev python3-dev python3-numpy
-  doctest-dev
+  doctest-dev doxygen
 "
 
 is_installed() {

@@ -3,21 +3,18 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include <cctype>
 #include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-
-namespace troffer {
+namespace troffer::bindings {
 
 namespace py = pybind11;
 
 namespace {
 
-// Returns the path of a str or an os.PathLike.
+// The path that a str or an os.PathLike holds.
 std::string path(const py::handle& value) {
   return py::module_::import("os").attr("fspath")(value).cast<std::string>();
 }
@@ -27,7 +24,7 @@ std::string text(const py::handle& value, const char* expected) {
   return value.cast<std::string>();
 }
 
-// Formats a number as the shortest text that parses to the same value.
+// The shortest text that reads as the same number.
 std::string number(const py::handle& value) {
   return fmt::format("{}", py::float_(py::reinterpret_borrow<py::object>(value)).cast<double>());
 }
@@ -36,7 +33,7 @@ std::string joined(const std::vector<std::string>& parts) {
   return fmt::format("{}", fmt::join(parts, ","));
 }
 
-// Returns the items of a sequence that is no str.
+// Items of a sequence; a text is none.
 std::vector<py::object> items(const py::handle& value, const char* expected) {
   if (py::isinstance<py::str>(value) || !py::hasattr(value, "__iter__"))
     throw py::type_error(expected);
@@ -51,7 +48,7 @@ std::string numbers(const py::handle& value, const char* expected) {
   return joined(parts);
 }
 
-// Parses a path, or a sequence of a path and at most `most` numbers.
+// A path, or (path, numbers…) with at most `most` numbers.
 std::vector<std::string> path_and_numbers(const py::handle& value, size_t most,
                                           const char* expected) {
   if (!py::isinstance<py::tuple>(value) && !py::isinstance<py::list>(value)) return {path(value)};
@@ -64,29 +61,28 @@ std::vector<std::string> path_and_numbers(const py::handle& value, size_t most,
   return parts;
 }
 
-// Returns the text of a datetime, or the given text.
+// A datetime or its text.
 std::string moment(const py::handle& value) {
-  if (!py::hasattr(value, "isoformat"))
-    return text(value, "at: the time must be a string or a datetime");
-  if (value.attr("utcoffset")().is_none()) throw UsageError("at: a datetime must have a time zone");
+  if (!py::hasattr(value, "isoformat")) return text(value, "at: its time is a text or a datetime");
+  if (value.attr("utcoffset")().is_none())
+    throw api::UsageError("at: a datetime must have a time zone");
   return value.attr("isoformat")(py::arg("timespec") = "seconds").cast<std::string>();
 }
 
 std::string place_and_time(const py::handle& value) {
-  static constexpr const char* expected = "at must be (latitude, longitude, time)";
+  static constexpr const char* expected = "at: (latitude, longitude, time)";
   const std::vector<py::object> all = items(value, expected);
   if (all.size() != 3) throw py::type_error(expected);
   return joined({number(all[0]), number(all[1]), moment(all[2])});
 }
 
 std::string date(const py::handle& value) {
-  if (!py::hasattr(value, "strftime")) return text(value, "date must be a string or a datetime");
+  if (!py::hasattr(value, "strftime")) return text(value, "date: a text or a datetime");
   return value.attr("strftime")("%m-%dT%H:%M").cast<std::string>();
 }
 
 std::string portal(const py::handle& value) {
-  static constexpr const char* expected =
-      "portal must be a name, four corners (x, y, z), or a list of these";
+  static constexpr const char* expected = "portal: a name, or four corners (x, y, z), or several";
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
   std::vector<std::string> corners;
   for (const py::object& corner : items(value, expected))
@@ -94,14 +90,13 @@ std::string portal(const py::handle& value) {
   return joined(corners);
 }
 
-// Parses one portal or several. In a list of several, the first one's first item is no number.
+// One portal or several. The first item of several holds no number.
 std::vector<std::string> portals(const py::handle& value) {
   if (py::isinstance<py::str>(value)) return {portal(value)};
-  const std::vector<py::object> all =
-      items(value, "portal must be a name or four corners (x, y, z)");
+  const std::vector<py::object> all = items(value, "portal: a name, or four corners (x, y, z)");
   const bool is_named = !all.empty() && py::isinstance<py::str>(all[0]);
   if (!all.empty() && !is_named) {
-    const std::vector<py::object> first = items(all[0], "portal: a corner must be (x, y, z)");
+    const std::vector<py::object> first = items(all[0], "portal: a corner is (x, y, z)");
     if (first.empty() || !py::hasattr(first[0], "__iter__")) return {portal(value)};
   }
   std::vector<std::string> texts;
@@ -111,21 +106,21 @@ std::vector<std::string> portals(const py::handle& value) {
 
 std::string environment(const py::handle& value) {
   std::vector<std::string> parts =
-      path_and_numbers(value, 1, "environment must be a path or (path, scale)");
-  // The explicit scale keeps a comma in the file name from being taken for a separator.
+      path_and_numbers(value, 1, "environment: a path, or (path, scale)");
+  // A scale at the end keeps a comma in the file's name from being read as the one before a scale.
   if (parts.size() == 1) parts.emplace_back("1");
   return joined(parts);
 }
 
 std::vector<std::string> luminaires(const py::handle& value) {
   static constexpr const char* expected =
-      "luminaires must be {name: path}, {name: (path, lumens)} or {name: (path, lumens, kelvin)}";
+      "luminaires: {name: path}, {name: (path, lumens)} or {name: (path, lumens, kelvin)}";
   if (!py::isinstance<py::dict>(value)) throw py::type_error(expected);
   std::vector<std::string> all;
   for (const auto& [name, file] : py::reinterpret_borrow<py::dict>(value)) {
     const std::string node = text(name, expected);
     if (node.find('=') != std::string::npos)
-      throw UsageError("luminaires: a name must not contain '='");
+      throw api::UsageError("luminaires: a name with '=' cannot be told from its file");
     all.push_back(node + "=" + joined(path_and_numbers(file, 2, expected)));
   }
   return all;
@@ -134,88 +129,69 @@ std::vector<std::string> luminaires(const py::handle& value) {
 double in_range(const py::handle& value, double least, double most, const char* what) {
   const auto v = py::float_(py::reinterpret_borrow<py::object>(value)).cast<double>();
   if (!(v >= least && v <= most))
-    throw UsageError(fmt::format("{} must lie between {} and {}", what, least, most));
+    throw api::UsageError(fmt::format("{} lies between {} and {}", what, least, most));
   return v;
 }
 
-using Taker = std::function<void(DaylightOptions&, const py::handle&)>;
+using Taker = std::function<void(api::AddedLight&, const py::handle&)>;
 
 const std::map<std::string, Taker>& takers() {
-  using O = DaylightOptions;
+  using O = api::AddedLight;
   using V = const py::handle&;
   static const std::map<std::string, Taker> all{
-      {"sky", [](O& o, V v) { o.sky = text(v, "sky must be a string"); }},
-      {"sun",
-       [](O& o, V v) {
-         o.sun = numbers(v, "sun must be (azimuth, altitude) or (azimuth, altitude, lux)");
-       }},
+      {"sky", [](O& o, V v) { o.sky = text(v, "sky: a text"); }},
+      {"sun", [](O& o, V v) { o.sun = numbers(v, "sun: (azimuth, altitude) or with lux"); }},
       {"at", [](O& o, V v) { o.at = place_and_time(v); }},
       {"turbidity", [](O& o, V v) { o.turbidity = in_range(v, 1, 10, "turbidity"); }},
       {"weather", [](O& o, V v) { o.weather = path(v); }},
       {"date", [](O& o, V v) { o.date = date(v); }},
-      {"north", [](O& o, V v) { o.north_deg = in_range(v, -360, 360, "north"); }},
+      {"north", [](O& o, V v) { o.north = in_range(v, -360, 360, "north"); }},
       {"ground", [](O& o, V v) { o.ground = in_range(v, 0, 1, "ground"); }},
       {"environment", [](O& o, V v) { o.environment = environment(v); }},
       {"environment_rotation",
-       [](O& o, V v) {
-         o.environment_rotation_deg = in_range(v, -360, 360, "environment_rotation");
-       }},
+       [](O& o, V v) { o.environment_rotation = in_range(v, -360, 360, "environment_rotation"); }},
       {"portal", [](O& o, V v) { o.portals = portals(v); }},
       {"luminaires", [](O& o, V v) { o.luminaires = luminaires(v); }},
       {"luminaire_list", [](O& o, V v) { o.luminaire_list = path(v); }},
       {"light_radius", [](O& o, V v) { o.light_radius = in_range(v, 1e-6, 1e6, "light_radius"); }},
-      {"up", [](O& o, V v) { o.up = numbers(v, "up must be (x, y, z)"); }},
+      {"up", [](O& o, V v) { o.up = numbers(v, "up: (x, y, z)"); }},
   };
   return all;
 }
 
 }  // namespace
 
-DaylightOptions daylight_options(const py::kwargs& asked) {
-  DaylightOptions o;
+api::AddedLight added_light(const py::kwargs& asked) {
+  api::AddedLight o;
   for (const auto& [key, value] : asked) {
     const auto name = py::cast<std::string>(key);
     const auto taker = takers().find(name);
     if (taker == takers().end()) throw py::type_error("add_light() has no argument '" + name + "'");
     if (!value.is_none()) taker->second(o, value);
   }
-  const bool is_asked = !o.sky.empty() || !o.sun.empty() || !o.at.empty() || !o.weather.empty();
-  if (!is_asked) o.sky = "none";
   return o;
 }
 
-std::string in_script_words(const std::string& message) {
-  std::string out;
-  bool is_option = false;
-  for (size_t i = 0; i < message.size(); ++i) {
-    const auto letter = [&](size_t k) {
-      return k < message.size() && std::isalpha(static_cast<unsigned char>(message[k])) != 0;
-    };
-    if (message.compare(i, 2, "--") == 0 && letter(i + 2)) {
-      is_option = true;
-      ++i;
-      continue;
-    }
-    is_option = is_option && (letter(i) || (message[i] == '-' && letter(i + 1)));
-    out += is_option && message[i] == '-' ? '_' : message[i];
-  }
-  return out;
-}
-
 const char* const add_light_help =
-    "Adds light to the scene as the program's options do. Added lights are dimmed and named like "
-    "lights of the file (see light()).\n\nsky: 'even', 'overcast', 'clear', 'cie:1' to 'cie:15', "
-    "each with ',LUX' on a horizontal plane or without, 'perez:DNI,DHI' in W/m2, or 'none'\nsun: "
-    "(azimuth, altitude) or (azimuth, altitude, lux), degrees clockwise from north and above the "
-    "horizon\nat: (latitude, longitude, time), the sun by place and time: a datetime with a time "
-    "zone, or a string like '2026-06-21T12:00+02:00'\nturbidity: Linke turbidity of a clear sky, 1 "
-    "to 10\nweather, date: path of an .epw file, and 'MM-DDTHH:MM' (or a datetime) in its standard "
-    "time; or with at instead of date\nnorth: degrees clockwise from the file's north; ground: "
-    "reflectance\nenvironment: path of an image, or (path, scale); environment_rotation: "
-    "degrees\nportal: name of a part of the scene, or four corners (x, y, z), or a list of "
-    "these\nluminaires: {name: path of .ies or .ldt}, or {name: (path, lumens[, kelvin])}; lumens "
-    "may be None\nluminaire_list: path of a .csv of luminaires to add\nlight_radius: metres; "
-    "points and spots become spheres\nup: (x, y, z)\n\nRaises ValueError, TypeError, or InputError "
-    "for files; the scene then stays unchanged.";
+    "Adds light as the program's options do, and makes parts of the scene shine; what a call adds "
+    "is like lights of the file: light(), dimmer.\n\n"
+    "sky: 'even', 'overcast', 'clear', 'cie:1' to 'cie:15', each with ',LUX' of a horizontal plane "
+    "or without, 'perez:DNI,DHI' in W/m2, or 'none'\n"
+    "sun: (azimuth, altitude) or (azimuth, altitude, lux), degrees clockwise from north and above "
+    "the horizon\n"
+    "at: (latitude, longitude, time), the sun by place and time: a datetime with a time zone, or "
+    "such as '2026-06-21T12:00+02:00'\n"
+    "turbidity: Linke's, 1 to 10, of a clear sky\n"
+    "weather, date: path of an .epw file, and 'MM-DDTHH:MM' (or a datetime) in its standard time; "
+    "or with at instead of date\n"
+    "north: degrees by which it lies clockwise from the file's; ground: reflectance\n"
+    "environment: path of an image, or (path, scale); environment_rotation: degrees\n"
+    "portal: name of a part of the scene, or four corners (x, y, z), or a list of such\n"
+    "luminaires: {name: path of .ies or .ldt}, or {name: (path, lumens[, kelvin])}; lumens may be "
+    "None\n"
+    "luminaire_list: path of a .csv of luminaires to add\n"
+    "light_radius: metres; points and spots become spheres\n"
+    "up: (x, y, z)\n\n"
+    "If it raises, the scene is as it was. ValueError, TypeError, InputError for files.";
 
-}  // namespace troffer
+}  // namespace troffer::bindings

@@ -1,21 +1,18 @@
-// Converts light that a script asks for into the program's options. Scene.add_light() uses it.
+// Scene.add_light(): keyword arguments as the façade's AddedLight.
 #pragma once
 
 #include <pybind11/pybind11.h>
 
-#include "lighting/daylight_options.h"
+#include "troffer/light.h"
+#include "troffer/scene.h"
 
-namespace troffer {
+namespace troffer::bindings {
 
-// Returns the keyword arguments of Scene.add_light() as DaylightOptions, exactly as if they were
-// typed. Light that is not asked for stays off. Throws TypeError for values of a wrong type,
-// UsageError for meaningless values.
-DaylightOptions daylight_options(const pybind11::kwargs& asked);
+// The arguments in the words of the program's options. TypeError for values of the wrong type,
+// UsageError for values without meaning.
+api::AddedLight added_light(const pybind11::kwargs& asked);
 
-// Rewrites option names in a message as a script spells them: "--some-option" becomes some_option.
-std::string in_script_words(const std::string& message);
-
-// Documentation of add_light() for help().
+// The text of help(Scene.add_light).
 extern const char* const add_light_help;
 
-}  // namespace troffer
+}  // namespace troffer::bindings

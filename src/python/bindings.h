@@ -1,34 +1,35 @@
-// Parts of the Python module. module.cpp calls the bind functions.
+// The parts of the Python module. They bind the library's façade (troffer/) and nothing else.
 #pragma once
 
 #include <pybind11/pybind11.h>
 
-#include <atomic>
 #include <functional>
+#include <memory>
 
-#include "base/parallel.h"
+#include "troffer/scene.h"
+#include "troffer/types.h"
 
-namespace troffer {
+namespace troffer::bindings {
 
-// Binds InputError (a ValueError), and translates UsageError to ValueError and EnvironmentError to
-// OSError.
+using SceneClass = pybind11::class_<api::Scene, std::shared_ptr<api::Scene>>;
+
+// InputError (a ValueError); UsageError becomes ValueError and EnvironmentError OSError.
 void bind_errors(pybind11::module_& m);
-// Binds Scene, its lights and materials, load(), look_at().
+// Camera, Scene, load(). Calls the four that follow it.
 void bind_scene(pybind11::module_& m);
-// Binds Picture, Measurements, Scene.render(), Scene.measure().
-void bind_work(pybind11::module_& m);
-// Binds compare(), read_image(), write_image().
+void bind_lights(pybind11::module_& m, SceneClass& scene);
+void bind_materials(pybind11::module_& m, SceneClass& scene);
+void bind_building(SceneClass& scene);
+void bind_render(SceneClass& scene);
+// Picture, Measurements.
+void bind_results(pybind11::module_& m);
+// compare(), read_image(), write_image().
 void bind_images(pybind11::module_& m);
 
-// Returns the exposure in stops. Throws UsageError if it is not between -60 and 60.
-double checked_exposure(double stops);
+// Runs work(progress) without the interpreter's lock. Between pieces of work it handles signals
+// (Ctrl-C raises KeyboardInterrupt) and calls callback(fraction), which may be None, with the lock;
+// a callback that returns False stops the work, one that raises ends it.
+void run_for_python(const pybind11::object& callback,
+                    const std::function<void(const api::Progress& progress)>& work);
 
-// Runs work(stop, fraction) on another thread without the interpreter's lock. The calling thread
-// handles signals (Ctrl-C raises KeyboardInterrupt) and calls progress(fraction), which may be
-// None, with the lock held. An exception from either stops the work and is rethrown after the work
-// has ended.
-void run_for_python(
-    const pybind11::object& progress,
-    const std::function<void(const StopFlag& stop, std::atomic<double>& fraction)>& work);
-
-}  // namespace troffer
+}  // namespace troffer::bindings

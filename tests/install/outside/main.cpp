@@ -1,14 +1,16 @@
 // A program that has nothing but what is installed: prints the illuminance at a point.
-#include <cstdio>
+#include <troffer/troffer.h>
 
-#include "import/import.h"
-#include "render/measure.h"
+#include <cstdio>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
-  const troffer::PreparedScene scene(troffer::import_scene(argv[1]));
-  const troffer::StopFlag stop{false};
-  const troffer::MeasureResult r = troffer::measure(
-      scene, {{{1.5, 2.1, 0.77}, {0, 0, 1}}}, {}, [](double) {}, stop);
-  std::printf("%.4f\n", r.values.at(0).illuminance_lx);
+  try {
+    auto scene = troffer::api::Scene::load(argv[1]);
+    const auto found = troffer::api::measure(scene, {{{1.5, 2.1, 0.77}, {0, 0, 1}}});
+    std::printf("%.4f\n", found.values.at(0).illuminance);
+  } catch (const troffer::InputError& e) {
+    std::fprintf(stderr, "%s\n", e.what());
+    return 1;
+  }
 }

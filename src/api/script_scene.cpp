@@ -1,18 +1,17 @@
-#include "python/script_scene.h"
+#include "api/script_scene.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <condition_variable>
-#include <exception>
 #include <map>
-#include <mutex>
-#include <thread>
 
 #include "base/error.h"
+#include "base/suggestion.h"
+#include "base/wildcard.h"
 #include "import/import.h"
+#include "import/recentre.h"
 #include "render/framing.h"
 #include "scene/joined_lights.h"
+#include "scene/names.h"
 #include "scene/orientation.h"
 
 namespace troffer {
@@ -22,9 +21,39 @@ ScriptScene::ScriptScene(const std::string& file, const ImportOptions& options)
   for (const Light& e : scene_.lights) dimmed_.push_back({e.radiance});
 }
 
+ScriptScene::ScriptScene(const Vec3& up, bool is_photometric) : up_(up) {
+  scene_.is_photometric = is_photometric;
+}
+
 Scene& ScriptScene::change() {
   prepared_ = nullptr;
   return scene_;
+}
+
+// A new light takes the dimmer that others of its name have.
+void ScriptScene::note_new_lights() {
+  const size_t known = dimmed_.size();
+  for (size_t i = known; i < scene_.lights.size(); ++i) {
+    Dimmed d{scene_.lights[i].radiance};
+    for (size_t k = 0; k < known; ++k)
+      if (scene_.lights[k].name == scene_.lights[i].name) d.dimmer = dimmed_[k].dimmer;
+    dimmed_.push_back(d);
+  }
+  apply_dimmers();
+}
+
+Vec3 ScriptScene::up() const {
+  return up_ ? *up_ : decide_up(scene_).up;
+}
+
+void ScriptScene::settle_origin(const Boxd& box) {
+  const auto has_place = [](const Light& e) {
+    return e.kind == LightKind::point || e.kind == LightKind::spot || has_surface(e.kind);
+  };
+  const bool is_new = up_ && scene_.meshes.empty() && scene_.spheres.empty() &&
+                      scene_.disks.empty() && scene_.cameras.empty() &&
+                      std::none_of(scene_.lights.begin(), scene_.lights.end(), has_place);
+  if (is_new) change().origin = choose_origin(box);
 }
 
 std::vector<std::string> ScriptScene::light_names() const {
@@ -38,7 +67,8 @@ std::vector<size_t> ScriptScene::lights_named(const std::string& name) const {
   std::vector<size_t> found;
   for (size_t i = 0; i < scene_.lights.size(); ++i)
     if (scene_.lights[i].name == name) found.push_back(i);
-  if (found.empty()) throw UsageError("no light is named '" + name + "'");
+  if (found.empty())
+    throw UsageError("no light is named '" + name + "'" + did_you_mean(name, light_names()));
   return found;
 }
 
@@ -47,9 +77,20 @@ double ScriptScene::dimmer(const std::string& name) const {
 }
 
 void ScriptScene::set_dimmer(const std::string& name, double dimmer) {
+  set_dimmers(lights_named(name), dimmer);
+}
+
+void ScriptScene::dim(const std::string& pattern, double dimmer) {
+  std::vector<size_t> found;
+  for (size_t i = 0; i < scene_.lights.size(); ++i)
+    if (fits_wildcard(scene_.lights[i].name, pattern)) found.push_back(i);
+  set_dimmers(found.empty() ? lights_named(pattern) : found, dimmer);
+}
+
+void ScriptScene::set_dimmers(const std::vector<size_t>& lights, double dimmer) {
   if (!std::isfinite(dimmer) || dimmer < 0)
-    throw UsageError("a dimmer must be a finite number, at least 0");
-  for (const size_t i : lights_named(name)) dimmed_[i].dimmer = dimmer;
+    throw UsageError("a dimmer is a finite number, at least 0");
+  for (const size_t i : lights) dimmed_[i].dimmer = dimmer;
   apply_dimmers();
 }
 
@@ -59,7 +100,7 @@ Rgb ScriptScene::radiance(const std::string& name) const {
 
 void ScriptScene::set_radiance(const std::string& name, Rgb radiance) {
   if (!is_finite(radiance) || std::min({radiance.r, radiance.g, radiance.b}) < 0)
-    throw UsageError("a radiance must be three finite numbers, each at least 0");
+    throw UsageError("a radiance is three finite numbers, at least 0");
   for (const size_t i : lights_named(name)) dimmed_[i].radiance = radiance;
   apply_dimmers();
 }
@@ -74,17 +115,18 @@ size_t ScriptScene::material_named(const std::string& name) const {
   const auto is_it = [&](const Material& m) { return m.name == name; };
   const auto& all = scene_.materials;
   const auto found = std::find_if(all.begin(), all.end(), is_it);
-  if (found == all.end()) throw UsageError("no material is named '" + name + "'");
+  if (found == all.end())
+    throw UsageError("no material is named '" + name + "'" +
+                     did_you_mean(name, material_names(scene_)));
   if (std::find_if(found + 1, all.end(), is_it) != all.end())
     throw UsageError("several materials are named '" + name + "'");
   return size_t(found - all.begin());
 }
 
-void ScriptScene::add_sky(const SkyRequest& request, Vec3 up, double north_deg) {
+void ScriptScene::add_sky(const SkyRequest& request, double north_deg) {
   Scene& scene = change();
-  troffer::add_sky(scene, request, make_compass(up, north_deg, is_mirrored(scene_)));
-  for (size_t i = dimmed_.size(); i < scene.lights.size(); ++i)
-    dimmed_.push_back({scene.lights[i].radiance});
+  troffer::add_sky(scene, request, make_compass(up(), north_deg, is_mirrored(scene_)));
+  note_new_lights();
 }
 
 void ScriptScene::add_light(const DaylightOptions& options) {
@@ -94,7 +136,10 @@ void ScriptScene::add_light(const DaylightOptions& options) {
     changed.lights[i].radiance = dimmed_[i].radiance;
     dimmers[changed.lights[i].name] = dimmed_[i].dimmer;
   }
-  add_daylight(changed, options);
+  if (up_ && options.up.empty())
+    add_daylight(changed, options, asked_up(*up_));
+  else
+    add_daylight(changed, options);
   change() = with_joined_lights(std::move(changed));
   dimmed_.clear();
   for (const Light& e : scene_.lights) {
@@ -107,64 +152,19 @@ void ScriptScene::add_light(const DaylightOptions& options) {
 Camera ScriptScene::camera(const std::string& name) {
   for (const Camera& c : scene_.cameras)
     if (name.empty() || c.name == name) return c;
-  if (!name.empty()) throw UsageError("no camera is named '" + name + "'");
-  return framing_camera(*prepared(), decide_up(scene_).up);
+  if (!name.empty())
+    throw UsageError("no camera is named '" + name + "'" +
+                     did_you_mean(name, camera_names(scene_)));
+  return framing_camera(*prepared(), up());
 }
 
 std::shared_ptr<const PreparedScene> ScriptScene::prepared() {
-  if (!prepared_) prepared_ = std::make_shared<const PreparedScene>(scene_);
+  if (prepared_) return prepared_;
+  if (bounds(scene_).is_empty() && scene_.lights.empty())
+    throw UsageError("the scene is empty: it has neither surfaces nor lights");
+  // Files are joined when they are loaded.
+  prepared_ = std::make_shared<const PreparedScene>(up_ ? with_joined_lights(scene_) : scene_);
   return prepared_;
-}
-
-namespace {
-
-// Lets a thread wait until the work has ended.
-class Ending {
- public:
-  void announce() {
-    const std::lock_guard lock(mutex_);
-    has_ended_ = true;
-    changed_.notify_all();
-  }
-  bool wait() {
-    std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, std::chrono::milliseconds(50), [&] { return has_ended_; });
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool has_ended_ = false;
-};
-
-}  // namespace
-
-void run_watched(const std::function<void(const StopFlag& stop)>& work,
-                 const std::function<void()>& look) {
-  StopFlag stop{false};
-  Ending ending;
-  std::exception_ptr of_work, of_look;
-  std::thread worker([&] {
-    try {
-      work(stop);
-    } catch (...) {
-      of_work = std::current_exception();
-    }
-    ending.announce();
-  });
-  for (bool has_ended = false; !has_ended;) {
-    has_ended = ending.wait();
-    if (of_look) continue;
-    try {
-      look();
-    } catch (...) {
-      of_look = std::current_exception();
-      stop = true;
-    }
-  }
-  worker.join();
-  if (of_look) std::rethrow_exception(of_look);
-  if (of_work) std::rethrow_exception(of_work);
 }
 
 }  // namespace troffer

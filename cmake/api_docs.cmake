@@ -1,0 +1,8 @@
+# The target api_docs: pages of the library's public headers, by Doxygen, where it is installed. What
+# is not documented, or documented wrongly, is an error.
+find_program(DOXYGEN_PROGRAM doxygen)
+if(DOXYGEN_PROGRAM)
+  configure_file(${CMAKE_SOURCE_DIR}/docs/Doxyfile.in ${CMAKE_BINARY_DIR}/Doxyfile @ONLY)
+  add_custom_target(api_docs COMMAND ${DOXYGEN_PROGRAM} ${CMAKE_BINARY_DIR}/Doxyfile
+    WORKING_DIRECTORY ${CMAKE_BINARY_DIR} VERBATIM)
+endif()

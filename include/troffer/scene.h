@@ -1,0 +1,212 @@
+/// @file
+/// Scenes: loaded from files or built from arrays, and changed between pictures.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "troffer/error.h"
+#include "troffer/image.h"
+#include "troffer/light.h"
+#include "troffer/material.h"
+#include "troffer/types.h"
+
+namespace troffer::api {
+
+/// What to read of a file.
+struct LoadOptions {
+  std::optional<std::string> variant{};    ///< glTF: name of the material variant
+  std::optional<double> time{};            ///< glTF: seconds into the animation; none: at rest
+  std::optional<std::string> animation{};  ///< glTF: name of the animation; none: the first
+  double emission_scale = 1;               ///< factor on what surfaces of the file emit
+  bool shows_baked = false;                ///< glTF: show the light that `troffer bake` wrote
+};
+
+/// Conventions of a scene that a program builds.
+struct SceneOptions {
+  Point up{0, 0, 1};           ///< upward direction
+  bool is_photometric = true;  ///< emission is in cd/m², cd and lx; else in W/(m² sr), W/sr, W/m²
+};
+
+/// A mesh of triangles. The front of a triangle is the side that its normals point to; without
+/// normals, the side from which its vertices run counterclockwise.
+struct MeshData {
+  std::string name{};                                     ///< may be empty
+  std::vector<Point> positions{};                         ///< per vertex, metres
+  std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< vertices from 0
+  std::vector<std::array<float, 3>> normals{};            ///< none, or one per vertex
+  std::vector<std::array<float, 2>> uvs{};                ///< none, or one per vertex
+  std::string material{};                                 ///< by name; empty: grey, matte
+  Transform transform = identity;                         ///< from the mesh to the world
+  std::optional<Emission> emission{};                     ///< none: it does not shine
+};
+
+/// A sphere; its front is outside.
+struct SphereData {
+  std::string name{};                  ///< may be empty
+  Point centre{};                      ///< metres
+  double radius = 1;                   ///< metres
+  std::string material{};              ///< by name; empty: grey, matte
+  std::optional<Emission> emission{};  ///< none: it does not shine
+};
+
+/// A camera by where it stands and what it looks at.
+struct LookAt {
+  Point eye{};                ///< metres
+  Point target{};             ///< metres
+  std::optional<Point> up{};  ///< none: the scene's
+  double fov = 60;            ///< degrees over the picture's shorter side, 0.01 to 179
+  double lens_radius = 0;     ///< metres; 0: everything is sharp
+  double focal_distance = 0;  ///< metres; 0: the distance of the target
+};
+
+/// A camera: Scene::look_at(), Scene::camera(). Copies are cheap.
+class Camera {
+ public:
+  struct Impl;
+  /// For the library.
+  explicit Camera(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+  /// Its name in the scene; empty for look_at().
+  const std::string& name() const;
+  /// For the library.
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::shared_ptr<const Impl> impl_;
+};
+
+/// A scene. It is for one thread at a time. Changes count from the next picture or measurement on,
+/// which then builds again what it needs. If a function throws, the scene is as it was.
+class Scene {
+ public:
+  /// An empty scene, to be built.
+  explicit Scene(const SceneOptions& options = {});
+  /// A copy, to be changed by itself.
+  Scene(const Scene& other);
+  /// Takes another scene, which may only be assigned to or destroyed afterwards.
+  Scene(Scene&& other) noexcept;
+  /// Becomes a copy.
+  Scene& operator=(const Scene& other);
+  /// Takes another scene, which may only be assigned to or destroyed afterwards.
+  Scene& operator=(Scene&& other) noexcept;
+  ~Scene();
+
+  /// Loads .gltf, .glb, .pbrt, .obj, .stl, .ply, .xml (Mitsuba) or .rad.
+  /// @throws InputError with file, line and column where the file cannot be used
+  /// @throws UsageError for options that the format does not have
+  static Scene load(const std::string& path, const LoadOptions& options = {});
+
+  /// @name Facts
+  /// @{
+
+  /// The path that load() was given; empty for a built scene.
+  const std::string& file() const;
+  /// What is odd in the scene, one sentence each.
+  std::vector<std::string> warnings() const;
+  /// Whether emission is in cd/m² (glTF); else it is in W/(m² sr).
+  bool is_photometric() const;
+  /// Number of triangles.
+  std::size_t triangle_count() const;
+  /// The lower and the upper corner of all surfaces, metres.
+  std::pair<Point, Point> bounds() const;
+  /// The upward direction: that of the options, or what the file says.
+  Point up() const;
+  /// Names of the cameras.
+  std::vector<std::string> camera_names() const;
+  /// Names of the lights, each once.
+  std::vector<std::string> light_names() const;
+  /// Names of all materials, by number; they may repeat.
+  std::vector<std::string> material_names() const;
+  /// @}
+
+  /// @name Building
+  /// @{
+
+  /// Adds a texture.
+  /// @throws UsageError where sizes do not fit or a number is not finite
+  TextureId add_texture(const TextureImage& image);
+  /// Adds a material of a new name. Returns its number.
+  /// @throws UsageError for a name that is taken and for values outside their ranges
+  std::size_t add_material(const std::string& name, const Material& material);
+  /// Adds a mesh. Triangles without area are left out with a warning.
+  /// @throws UsageError for indices that do not exist, numbers that are not finite, arrays of other
+  ///   lengths than the positions, and materials that do not exist
+  void add_mesh(const MeshData& mesh);
+  /// Adds a sphere. @throws UsageError as add_mesh()
+  void add_sphere(const SphereData& sphere);
+  /// Adds a point light. @throws UsageError for values that are negative or not finite
+  void add_light(const PointLight& light);
+  /// Adds a spot light. @throws UsageError for values that are negative or not finite
+  void add_light(const SpotLight& light);
+  /// Adds a distant light. @throws UsageError for values that are negative or not finite
+  void add_light(const DistantLight& light);
+  /// Adds a measured luminaire.
+  /// @throws InputError where the file cannot be used
+  void add_light(const Luminaire& luminaire);
+  /// Adds a sky. @throws UsageError for a sky that does not exist or lacks its sun
+  void add_light(const Sky& sky);
+  /// Adds light as the program's options do. Lights keep their dimmers by name.
+  /// @throws UsageError for values without meaning
+  /// @throws InputError where a file cannot be used
+  void add_light(const AddedLight& light);
+  /// Adds the light "environment": an image of the surroundings over all directions. Its middle
+  /// column lies in the east, and columns further right lie clockwise, seen from above. `rotation`
+  /// turns it clockwise, degrees.
+  /// @throws UsageError for numbers that are negative or not finite
+  void add_environment(const Image& image, double scale = 1, double rotation = 0);
+  /// Adds a camera under a name. @throws UsageError for a name that is taken
+  void add_camera(const std::string& name, const LookAt& view);
+  /// @}
+
+  /// @name Changing
+  /// @{
+
+  /// The lights of one name. @throws UsageError where there are none
+  LightInfo light(const std::string& name) const;
+  /// Sets the factor on what the lights of one name send, at least 0.
+  void set_dimmer(const std::string& name, double dimmer);
+  /// Sets the radiance of the lights of one name, undimmed: W/(m² sr) or cd/m²; of points and
+  /// spots the intensity; of distant lights the irradiance; of images, skies and measured
+  /// luminaires a factor. At least 0.
+  void set_radiance(const std::string& name, const Color& radiance);
+  /// Sets the dimmer of all lights whose name fits a pattern, in which '*' stands for any letters.
+  /// @throws UsageError where no name fits
+  void dim(const std::string& pattern, double factor);
+  /// The number of the material of that name. @throws UsageError where there is none, or several
+  std::size_t material(const std::string& name) const;
+  /// Reflectance of a material, without its texture.
+  Color base_color(std::size_t material) const;
+  /// Sets the reflectance, 0 to 1.
+  void set_base_color(std::size_t material, const Color& color);
+  /// A number of a material, without its texture.
+  double number(std::size_t material, MaterialNumber which) const;
+  /// Sets a number of a material. @throws UsageError outside its range
+  void set_number(std::size_t material, MaterialNumber which, double value);
+  /// @}
+
+  /// @name Cameras
+  /// @{
+
+  /// The camera of that name; for "", the first one, or one that frames the scene.
+  /// @throws UsageError where no camera has the name
+  Camera camera(const std::string& name = "");
+  /// A camera at a place that looks at another one.
+  /// @throws UsageError for values outside their ranges, or an eye at the target
+  Camera look_at(const LookAt& view) const;
+  /// @}
+
+  struct Impl;
+  /// For the library.
+  Impl& impl() { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace troffer::api

@@ -1,0 +1,18 @@
+/// @file
+/// All of troffer's library: scenes, pictures, measurements.
+#pragma once
+
+#include "troffer/error.h"
+#include "troffer/image.h"
+#include "troffer/light.h"
+#include "troffer/material.h"
+#include "troffer/measure.h"
+#include "troffer/render.h"
+#include "troffer/scene.h"
+#include "troffer/types.h"
+
+/// Physically based light in rooms.
+namespace troffer {
+/// What programs use: load or build a Scene, then render() and measure().
+namespace api {}
+}  // namespace troffer
