@@ -86,7 +86,7 @@ void Scene::add_mesh(const MeshData& data) {
   const std::optional<EmissionSpec> emission = impl_->emission_for(data.emission, data.name);
   const AnchoredMesh mesh = anchored(data);
   const Affine world_from_mesh = affine(data.transform);
-  PlacedLook look;
+  ShapeAttributes look;
   look.material = impl_->material_for(data.material);
   look.emission = emission;
   PlacedBounds bounds;
@@ -102,7 +102,7 @@ void Scene::add_sphere(const SphereData& data) {
   const Vec3d centre = place(data.centre, owner + ": its centre");
   const double radius = in_range(data.radius, 1e-6, 1e6, owner + ": its radius");
   const std::optional<EmissionSpec> emission = impl_->emission_for(data.emission, data.name);
-  PlacedLook look;
+  ShapeAttributes look;
   look.material = impl_->material_for(data.material);
   look.emission = emission;
   PlacedBounds bounds;

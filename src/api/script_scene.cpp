@@ -137,7 +137,7 @@ void ScriptScene::add_light(const DaylightOptions& options) {
     dimmers[changed.lights[i].name] = dimmed_[i].dimmer;
   }
   if (up_ && options.up.empty())
-    add_daylight(changed, options, asked_up(*up_));
+    add_daylight(changed, options, requested_up(*up_));
   else
     add_daylight(changed, options);
   change() = with_joined_lights(std::move(changed));
