@@ -20,7 +20,7 @@ struct Image {
   std::vector<float> pixels{};  ///< height × width × 3 numbers: red, green, blue; row 0 on top
 };
 
-/// How light becomes display values in 8-bit pictures.
+/// Conversion of light to display values, for 8-bit pictures.
 struct DisplayOptions {
   std::optional<double> exposure{};  ///< stops, -60 to 60; none: chosen by the picture's brightness
   bool is_filmic = true;  ///< applies a filmic tone map; else values are clamped to [0, 1]

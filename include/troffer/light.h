@@ -13,7 +13,7 @@
 
 namespace troffer::api {
 
-/// What a mesh or a sphere emits, evenly in all directions.
+/// Emission of a mesh or a sphere: the same radiance in all directions.
 struct Emission {
   Color radiance{1, 1, 1};    ///< W/(m² sr), or cd/m² where the scene is photometric
   bool is_two_sided = false;  ///< emits from the back of its triangles too

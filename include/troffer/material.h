@@ -29,7 +29,7 @@ struct TextureImage {
   bool is_filtered = true;            ///< bilinear; else the nearest texel
 };
 
-/// How a surface scatters light.
+/// Reflection models.
 enum class MaterialModel {
   matte,       ///< Lambertian reflection of base_color
   plastic,     ///< a dielectric coat of `ior` and `roughness` over Lambertian base_color
@@ -40,7 +40,7 @@ enum class MaterialModel {
   thin_glass,  ///< a pane without thickness: light goes straight through
 };
 
-/// What the back of a surface is to viewers.
+/// Appearance of the back of a surface.
 enum class BackFace {
   shown,   ///< the same as its front
   black,   ///< it reflects nothing

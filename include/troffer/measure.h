@@ -11,13 +11,13 @@
 
 namespace troffer::api {
 
-/// Where light is measured.
+/// A point to measure at.
 struct MeasurePoint {
   Point position{};       ///< metres
   Point normal{0, 0, 1};  ///< the side that is lit; any length but zero
 };
 
-/// What is found at a point.
+/// Result at one point.
 struct Measurement {
   double illuminance = 0;     ///< lx
   double standard_error = 0;  ///< lx; illuminance ± 1.96 of these holds the true value in 95 of 100

@@ -29,7 +29,7 @@ struct Kj92Options {
   std::vector<std::string> select{};      ///< only these lights may be sampled; empty: all
 };
 
-/// How light is computed, for pictures and measurements alike.
+/// Options of the computation of light, for pictures and measurements.
 struct LightOptions {
   std::string method = "certified";  ///< "certified", "kj92", "fixed", "path" …
   std::string indirect = "auto";     ///< reflected light: "auto", "cells", "radiosity", "none"
@@ -111,13 +111,13 @@ class Picture {
   Image image() const;
   /// Names of the further layers, in the order of RenderOptions::aovs.
   std::vector<std::string> layer_names() const;
-  /// Whether there is a layer of that name.
+  /// Returns true if there is a layer of that name.
   bool has_layer(const std::string& name) const;
   /// A layer. @throws UsageError where there is none of that name
   PixelView layer(const std::string& name) const;
-  /// How it was made.
+  /// Facts about its making.
   const RenderStatistics& statistics() const;
-  /// Whether all work was done.
+  /// False after a stop or a time limit.
   bool is_complete() const;
   /// Writes .png (through `display`), .exr (with all layers), .hdr or .pfm (linear).
   /// @throws UsageError, EnvironmentError as write_image()

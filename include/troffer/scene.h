@@ -19,7 +19,7 @@
 
 namespace troffer::api {
 
-/// What to read of a file.
+/// Options of loading a file.
 struct LoadOptions {
   std::optional<std::string> variant{};    ///< glTF: name of the material variant
   std::optional<double> time{};            ///< glTF: seconds into the animation; none: at rest
@@ -107,9 +107,9 @@ class Scene {
 
   /// The path that load() was given; empty for a built scene.
   const std::string& file() const;
-  /// What is odd in the scene, one sentence each.
+  /// Warnings about the scene, one sentence each.
   std::vector<std::string> warnings() const;
-  /// Whether emission is in cd/m² (glTF); else it is in W/(m² sr).
+  /// True if emission is in cd/m² (glTF); else it is in W/(m² sr).
   bool is_photometric() const;
   /// Number of triangles.
   std::size_t triangle_count() const;

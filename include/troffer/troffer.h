@@ -13,6 +13,6 @@
 
 /// Physically based light in rooms.
 namespace troffer {
-/// What programs use: load or build a Scene, then render() and measure().
+/// The public interface: load or build a Scene, then call render() and measure().
 namespace api {}
 }  // namespace troffer

@@ -1,4 +1,4 @@
-// What stands behind the façade's Picture.
+// Implementation of the façade's Picture.
 #pragma once
 
 #include "render/render.h"

@@ -42,7 +42,7 @@ void set_shadow_rays(int rays, troffer::RenderOptions& o) {
   tree.most_rays = std::max(tree.most_rays, tree.initial_rays);
 }
 
-// Where refinement does not reach the wanted error, as many viewing rays as it takes.
+// Methods without refinement get as many viewing rays as the wanted error takes.
 void set_error_limit(const RenderOptions& from, troffer::RenderOptions& o) {
   constexpr int enough = 1 << 16;
   if (from.error_limit != 0) in_range(from.error_limit, 1e-6, 10, "error_limit");

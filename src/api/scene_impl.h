@@ -1,4 +1,4 @@
-// What stands behind the façade's Scene and Camera.
+// Implementation of the façade's Scene and Camera.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct Scene::Impl {
   uint32_t material_for(const std::string& name);
   // UsageError where the texture does not exist.
   int32_t texture_for(TextureId texture) const;
-  // What a shape of that name emits. UsageError for values without meaning.
+  // Emission of a shape of that name. UsageError for values without meaning.
   std::optional<EmissionSpec> emission_for(const std::optional<Emission>& emission,
                                            const std::string& shape) const;
 };
