@@ -73,7 +73,7 @@ struct Material {
   double anisotropy_rotation = 0;  ///< of the grain, degrees counterclockwise from growing u
   TextureId normal_texture{};      ///< normal map in tangent space; TextureImage::is_srgb is false
   double normal_scale = 1;         ///< factor on the slopes of the normal map
-  std::optional<double> alpha_cut{};     ///< 0 to 1; texels of base_color of less alpha are holes
+  std::optional<double> alpha_cut{};     ///< 0 to 1; holes where the texture's alpha is less
   BackFace back_face = BackFace::shown;  ///< appearance of the back
 
   /// Lambertian reflection.
