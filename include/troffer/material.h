@@ -63,13 +63,13 @@ struct Material {
   double transmission = 0;          ///< share of diffuse light that passes as through glass
   double diffuse_transmission = 0;  ///< share that is transmitted diffusely, as by paper
   bool is_thin = true;              ///< principled: `transmission` passes without refraction
-  Color absorption{0, 0, 0};   ///< of solid glass, per metre: transmits exp(-absorption × metres)
-  double coat = 0;             ///< share of the surface under a clear coat, 0 to 1
-  double coat_roughness = 0;   ///< of the coat, 0 to 1
-  double coat_ior = 1.5;       ///< refractive index of the coat, 1 to 100
-  Color sheen_color{0, 0, 0};  ///< reflectance of cloth fibres
-  double sheen_roughness = 0;  ///< of the fibres, 0 to 1
-  double anisotropy = 0;       ///< 0 to 1; above 0, gloss is wider along the grain
+  Color absorption{0, 0, 0};       ///< per metre in solid glass; thin: exponent at normal incidence
+  double coat = 0;                 ///< share of the surface under a clear coat, 0 to 1
+  double coat_roughness = 0;       ///< of the coat, 0 to 1
+  double coat_ior = 1.5;           ///< refractive index of the coat, 1 to 100
+  Color sheen_color{0, 0, 0};      ///< reflectance of cloth fibres
+  double sheen_roughness = 0;      ///< of the fibres, 0 to 1
+  double anisotropy = 0;           ///< 0 to 1; above 0, gloss is wider along the grain
   double anisotropy_rotation = 0;  ///< of the grain, degrees counterclockwise from growing u
   TextureId normal_texture{};      ///< normal map in tangent space; TextureImage::is_srgb is false
   double normal_scale = 1;         ///< factor on the slopes of the normal map
