@@ -30,7 +30,7 @@ struct Kj92Options {
   std::vector<std::string> select{};  ///< names of the only lights to sample; empty: all
 };
 
-/// How light is computed, for pictures and measurements.
+/// Options for computing light, shared by pictures and measurements.
 struct LightOptions {
   std::string method = "certified";  ///< one of method_names()
   std::string indirect = "auto";     ///< reflected light: "auto", "cells", "radiosity", "none"
@@ -44,7 +44,7 @@ struct LightOptions {
 
 /// Options of a picture. Options that belong to other methods have no effect.
 struct RenderOptions {
-  LightOptions light{};                      ///< how light is computed
+  LightOptions light{};                      ///< options for computing light
   int width = 0;                             ///< pixels; 0: from the camera
   int height = 0;                            ///< pixels; 0: from the camera
   std::optional<std::array<int, 4>> crop{};  ///< x0, y0, x1, y1 in pixels; x1 and y1 exclusive
@@ -55,7 +55,7 @@ struct RenderOptions {
   double error_limit = 0;            ///< estimated error at which to stop; 0: none
 };
 
-/// How a picture was made, and its estimated error. Seconds are wall-clock time.
+/// Statistics of a picture: size, time, estimated error and rays. Seconds are wall-clock time.
 struct RenderStatistics {
   int width = 0;                        ///< pixels
   int height = 0;                       ///< pixels
@@ -116,7 +116,7 @@ class Picture {
   bool has_layer(const std::string& name) const;
   /// A layer. @throws UsageError if no layer has that name
   PixelView layer(const std::string& name) const;
-  /// How the picture was made, and its estimated error.
+  /// Size, time, estimated error and numbers of rays.
   const RenderStatistics& statistics() const;
   /// False after a stop or a time limit.
   bool is_complete() const;
