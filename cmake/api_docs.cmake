@@ -1,5 +1,5 @@
-# The target api_docs: pages of the library's public headers, by Doxygen, where it is installed. What
-# is not documented, or documented wrongly, is an error.
+# Target api_docs: makes pages of the public headers, if Doxygen is installed. Missing or wrong
+# documentation is an error.
 find_program(DOXYGEN_PROGRAM doxygen)
 if(DOXYGEN_PROGRAM)
   configure_file(${CMAKE_SOURCE_DIR}/docs/Doxyfile.in ${CMAKE_BINARY_DIR}/Doxyfile @ONLY)

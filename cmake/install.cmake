@@ -1,12 +1,12 @@
-# What `cmake --install` and `cpack` hand out: the program with its manual and completion, the
-# library as troffer::troffer with its headers (find_package(troffer)), the Python module.
+# Files that `cmake --install` and `cpack` install: the program with its manual and completion, the
+# library with its headers (find_package(troffer), target troffer::troffer), and the Python module.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 install(TARGETS troffer)
-# The library: the headers of the facade, and the static libraries behind it. Other projects link
-# troffer::troffer; the rooms below it are exported because static libraries need them, under names
-# that promise nothing.
+# The library consists of the public headers and static libraries. Other projects link
+# troffer::troffer. Static libraries need the rooms below it, so these are exported too, with names
+# that mark them as private.
 set(_linked api)
 set(_next api)
 while(_next)
@@ -35,7 +35,7 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/troffer-config-version.cmak
 install(FILES ${CMAKE_BINARY_DIR}/troffer-config.cmake
   ${CMAKE_BINARY_DIR}/troffer-config-version.cmake DESTINATION ${_package})
 
-# Manual pages and completion say what the program says of itself.
+# Makes manual pages and completion from the help texts of the program.
 if(Python_Interpreter_FOUND)
   set(_manual ${CMAKE_BINARY_DIR}/manual)
   add_custom_command(OUTPUT ${_manual}/troffer.1
@@ -53,7 +53,7 @@ if(Python_Interpreter_FOUND)
     DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()
 if(TROFFER_MPI)
-  install(TARGETS troffer-mpi COMPONENT mpi)  # a package of its own: nobody else needs MPI
+  install(TARGETS troffer-mpi COMPONENT mpi)  # separate package: other users do not need MPI
 endif()
 if(TROFFER_PYTHON)
   install(TARGETS troffer_module DESTINATION lib/python3/dist-packages)

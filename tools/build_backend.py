@@ -1,12 +1,13 @@
-"""Makes a wheel of the Python module: a build backend (PEP 517) of the standard library and CMake.
+"""Builds a wheel of the Python module. A build backend (PEP 517) that needs only CMake and Python.
 
-`pip install .` and `pip wheel .` call it. By hand:
+`pip install .` and `pip wheel .` call it. To call it directly:
 
     python3 -c 'import sys; sys.path.insert(0, "tools"); import build_backend
     print(build_backend.build_wheel("."))'
 
-Settings (`pip --config-settings NAME=VALUE`): build-dir: the folder that CMake builds in
-[build/wheel]; module: a module that is built already, which is packed as it is.
+Settings (`pip --config-settings NAME=VALUE`):
+    build-dir   folder for CMake's build [build/wheel]
+    module      path of a built module to pack; CMake is not called
 """
 import base64
 import hashlib

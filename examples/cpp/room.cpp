@@ -11,7 +11,7 @@ namespace {
 
 using troffer::api::Point;
 
-// Two triangles between four corners, whose front is the side from which these run
+// Returns two triangles between four corners. Their front is the side from which the corners run
 // counterclockwise.
 troffer::api::MeshData quad(const std::string& name, const Point& a, const Point& b, const Point& c,
                             const Point& d, const std::string& material) {
@@ -24,7 +24,7 @@ troffer::api::MeshData quad(const std::string& name, const Point& a, const Point
 }
 
 troffer::api::Scene make_room() {
-  troffer::api::Scene scene;  // z is up, emission is in cd/m²
+  troffer::api::Scene scene;  // z is up; emission is in cd/m²
   scene.add_material("white", troffer::api::Material::matte({0.8F, 0.8F, 0.8F}));
   scene.add_material("floor", troffer::api::Material::plastic({0.35F, 0.25F, 0.18F}, 0.3));
   scene.add_material("desk", troffer::api::Material::matte({0.5F, 0.4F, 0.3F}));

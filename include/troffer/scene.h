@@ -1,5 +1,5 @@
 /// @file
-/// Scenes: loaded from files or built from arrays, and changed between pictures.
+/// Scenes: loaded from files or built from arrays. Scenes can change between pictures.
 #pragma once
 
 #include <array>
@@ -19,32 +19,32 @@
 
 namespace troffer::api {
 
-/// Options of loading a file.
+/// Options for loading a file.
 struct LoadOptions {
   std::optional<std::string> variant{};    ///< glTF: name of the material variant
   std::optional<double> time{};            ///< glTF: seconds into the animation; none: at rest
   std::optional<std::string> animation{};  ///< glTF: name of the animation; none: the first
-  double emission_scale = 1;               ///< factor on what surfaces of the file emit
+  double emission_scale = 1;               ///< factor on the emission of surfaces in the file
   bool shows_baked = false;                ///< glTF: show the light that `troffer bake` wrote
 };
 
-/// Conventions of a scene that a program builds.
+/// Conventions of a scene that is built from arrays.
 struct SceneOptions {
   Point up{0, 0, 1};           ///< upward direction
-  bool is_photometric = true;  ///< emission is in cd/m², cd and lx; else in W/(m² sr), W/sr, W/m²
+  bool is_photometric = true;  ///< light in cd/m², cd and lx; if false, in W/(m² sr), W/sr, W/m²
 };
 
-/// A mesh of triangles. The front of a triangle is the side that its normals point to; without
-/// normals, the side from which its vertices run counterclockwise.
+/// A mesh of triangles. The front of a triangle is the side that its normals point to. Without
+/// normals it is the side from which the vertices run counterclockwise.
 struct MeshData {
   std::string name{};                                     ///< may be empty
   std::vector<Point> positions{};                         ///< per vertex, metres
-  std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< vertices from 0
+  std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< vertex numbers, from 0
   std::vector<std::array<float, 3>> normals{};            ///< none, or one per vertex
   std::vector<std::array<float, 2>> uvs{};                ///< none, or one per vertex
-  std::string material{};                                 ///< by name; empty: grey, matte
-  Transform transform = identity;                         ///< from the mesh to the world
-  std::optional<Emission> emission{};                     ///< none: it does not shine
+  std::string material{};                                 ///< name; empty: matte grey
+  Transform transform = identity;                         ///< from mesh to world
+  std::optional<Emission> emission{};                     ///< none: emits nothing
 };
 
 /// A sphere; its front is outside.
@@ -52,70 +52,71 @@ struct SphereData {
   std::string name{};                  ///< may be empty
   Point centre{};                      ///< metres
   double radius = 1;                   ///< metres
-  std::string material{};              ///< by name; empty: grey, matte
-  std::optional<Emission> emission{};  ///< none: it does not shine
+  std::string material{};              ///< name; empty: matte grey
+  std::optional<Emission> emission{};  ///< none: emits nothing
 };
 
-/// A camera by where it stands and what it looks at.
+/// A camera by its position and target.
 struct LookAt {
   Point eye{};                ///< metres
   Point target{};             ///< metres
   std::optional<Point> up{};  ///< none: the scene's
-  double fov = 60;            ///< degrees over the picture's shorter side, 0.01 to 179
-  double lens_radius = 0;     ///< metres; 0: everything is sharp
-  double focal_distance = 0;  ///< metres; 0: the distance of the target
+  double fov = 60;         ///< field of view over the picture's shorter side, 0.01 to 179 degrees
+  double lens_radius = 0;  ///< metres; 0: everything is sharp
+  double focal_distance = 0;  ///< metres; 0: distance of the target
 };
 
-/// A camera: Scene::look_at(), Scene::camera(). Copies are cheap.
+/// A camera, made by Scene::look_at() or Scene::camera(). Copies are cheap.
 class Camera {
  public:
   struct Impl;
-  /// For the library.
+  /// For the library's own use.
   explicit Camera(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
-  /// Its name in the scene; empty for look_at().
+  /// Name in the scene; empty for a camera of look_at().
   const std::string& name() const;
-  /// For the library.
+  /// For the library's own use.
   const Impl& impl() const { return *impl_; }
 
  private:
   std::shared_ptr<const Impl> impl_;
 };
 
-/// A scene. It is for one thread at a time. Changes count from the next picture or measurement on,
-/// which then builds again what it needs. If a function throws, the scene is as it was.
+/// A scene. Only one thread may use it at a time. Changes take effect in the next picture or
+/// measurement, which first rebuilds what depends on them. If a function throws, the scene is
+/// unchanged.
 class Scene {
  public:
-  /// An empty scene, to be built.
+  /// Makes an empty scene, to be built.
   explicit Scene(const SceneOptions& options = {});
-  /// A copy, to be changed by itself.
+  /// Makes an independent copy.
   Scene(const Scene& other);
   /// Takes another scene, which may only be assigned to or destroyed afterwards.
   Scene(Scene&& other) noexcept;
-  /// Becomes a copy.
+  /// Replaces the scene by an independent copy.
   Scene& operator=(const Scene& other);
   /// Takes another scene, which may only be assigned to or destroyed afterwards.
   Scene& operator=(Scene&& other) noexcept;
   ~Scene();
 
   /// Loads .gltf, .glb, .pbrt, .obj, .stl, .ply, .xml (Mitsuba) or .rad.
-  /// @throws InputError with file, line and column where the file cannot be used
+  /// @throws InputError with file, line and column if the file cannot be used
   /// @throws UsageError for options that the format does not have
   static Scene load(const std::string& path, const LoadOptions& options = {});
 
   /// @name Facts
   /// @{
 
-  /// The path that load() was given; empty for a built scene.
+  /// Path that was given to load(); empty for a built scene.
   const std::string& file() const;
   /// Warnings about the scene, one sentence each.
   std::vector<std::string> warnings() const;
-  /// True if emission is in cd/m² (glTF); else it is in W/(m² sr).
+  /// Returns true if emission is in cd/m² (glTF), false if it is in W/(m² sr).
   bool is_photometric() const;
   /// Number of triangles.
   std::size_t triangle_count() const;
-  /// The lower and the upper corner of all surfaces, metres.
+  /// Bounding box of all surfaces: the lower and the upper corner, metres.
   std::pair<Point, Point> bounds() const;
-  /// The upward direction: that of the options, or what the file says.
+  /// Upward direction. For a loaded scene it follows from the format or from hints in the file.
   Point up() const;
   /// Names of the cameras.
   std::vector<std::string> camera_names() const;
@@ -129,14 +130,14 @@ class Scene {
   /// @{
 
   /// Adds a texture.
-  /// @throws UsageError where sizes do not fit or a number is not finite
+  /// @throws UsageError if sizes do not fit or a number is not finite
   TextureId add_texture(const TextureImage& image);
-  /// Adds a material of a new name. Returns its number.
+  /// Adds a material under a new name. Returns its number.
   /// @throws UsageError for a name that is taken and for values outside their ranges
   std::size_t add_material(const std::string& name, const Material& material);
   /// Adds a mesh. Triangles without area are left out with a warning.
-  /// @throws UsageError for indices that do not exist, numbers that are not finite, arrays of other
-  ///   lengths than the positions, and materials that do not exist
+  /// @throws UsageError for vertices, materials or textures that do not exist, for numbers that
+  ///   are not finite, and for normals or uvs that are not one per position
   void add_mesh(const MeshData& mesh);
   /// Adds a sphere. @throws UsageError as add_mesh()
   void add_sphere(const SphereData& sphere);
@@ -147,17 +148,18 @@ class Scene {
   /// Adds a distant light. @throws UsageError for values that are negative or not finite
   void add_light(const DistantLight& light);
   /// Adds a measured luminaire.
-  /// @throws InputError where the file cannot be used
+  /// @throws InputError if the file cannot be used
+  /// @throws UsageError for values outside their ranges
   void add_light(const Luminaire& luminaire);
-  /// Adds a sky. @throws UsageError for a sky that does not exist or lacks its sun
+  /// Adds a sky. @throws UsageError for an unknown kind, or if the kind needs a sun that is missing
   void add_light(const Sky& sky);
-  /// Adds light as the program's options do. Lights keep their dimmers by name.
-  /// @throws UsageError for values without meaning
-  /// @throws InputError where a file cannot be used
+  /// Adds light as options of the program do. Lights keep their dimmers by name.
+  /// @throws UsageError for invalid values
+  /// @throws InputError if a file cannot be used
   void add_light(const AddedLight& light);
-  /// Adds the light "environment": an image of the surroundings over all directions. Its middle
+  /// Adds the light "environment": a latitude-longitude image of the surroundings. Its middle
   /// column lies in the east, and columns further right lie clockwise, seen from above. `rotation`
-  /// turns it clockwise, degrees.
+  /// turns it clockwise, in degrees.
   /// @throws UsageError for numbers that are negative or not finite
   void add_environment(const Image& image, double scale = 1, double rotation = 0);
   /// Adds a camera under a name. @throws UsageError for a name that is taken
@@ -167,18 +169,21 @@ class Scene {
   /// @name Changing
   /// @{
 
-  /// The lights of one name. @throws UsageError where there are none
+  /// Returns facts about the lights of one name. @throws UsageError if there are none
   LightInfo light(const std::string& name) const;
-  /// Sets the factor on what the lights of one name send, at least 0.
+  /// Sets the dimmer of the lights of one name: the factor on their light, at least 0.
+  /// @throws UsageError if there are none, or for an invalid factor
   void set_dimmer(const std::string& name, double dimmer);
-  /// Sets the radiance of the lights of one name, undimmed: W/(m² sr) or cd/m²; of points and
-  /// spots the intensity; of distant lights the irradiance; of images, skies and measured
-  /// luminaires a factor. At least 0.
+  /// Sets the radiance of the lights of one name, before their dimmer: W/(m² sr) or cd/m², at least
+  /// 0. For point and spot lights it is the intensity, for distant lights the irradiance. For
+  /// images, skies and measured luminaires it is a factor.
+  /// @throws UsageError if there are none, or for an invalid radiance
   void set_radiance(const std::string& name, const Color& radiance);
-  /// Sets the dimmer of all lights whose name fits a pattern, in which '*' stands for any letters.
-  /// @throws UsageError where no name fits
+  /// Sets the dimmer of all lights whose name fits a pattern. '*' stands for any characters.
+  /// @throws UsageError if no name fits
   void dim(const std::string& pattern, double factor);
-  /// The number of the material of that name. @throws UsageError where there is none, or several
+  /// Returns the number of the material of that name.
+  /// @throws UsageError if there is none or several
   std::size_t material(const std::string& name) const;
   /// Reflectance of a material, without its texture.
   Color base_color(std::size_t material) const;
@@ -193,16 +198,17 @@ class Scene {
   /// @name Cameras
   /// @{
 
-  /// The camera of that name; for "", the first one, or one that frames the scene.
-  /// @throws UsageError where no camera has the name
+  /// Returns the camera of that name. An empty name means the first camera, or one
+  /// that frames the scene if it has none.
+  /// @throws UsageError if no camera has the name
   Camera camera(const std::string& name = "");
-  /// A camera at a place that looks at another one.
-  /// @throws UsageError for values outside their ranges, or an eye at the target
+  /// Makes a camera from a position and a target.
+  /// @throws UsageError for values outside their ranges, or if the eye is at the target
   Camera look_at(const LookAt& view) const;
   /// @}
 
   struct Impl;
-  /// For the library.
+  /// For the library's own use.
   Impl& impl() { return *impl_; }
 
  private:

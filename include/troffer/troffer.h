@@ -1,5 +1,5 @@
 /// @file
-/// All of troffer's library: scenes, pictures, measurements.
+/// Includes the whole public interface: scenes, pictures and measurements.
 #pragma once
 
 #include "troffer/error.h"
@@ -11,7 +11,7 @@
 #include "troffer/scene.h"
 #include "troffer/types.h"
 
-/// Physically based light in rooms.
+/// Physically based rendering of rooms.
 namespace troffer {
 /// The public interface: load or build a Scene, then call render() and measure().
 namespace api {}

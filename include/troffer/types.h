@@ -1,8 +1,8 @@
 /// @file
-/// Plain types that all headers share.
+/// Plain types that all public headers share.
 ///
 /// Lengths are metres and angles are degrees. Light is linear with Rec. 709 primaries. Emission is
-/// in W/(m² sr), or in cd/m² where Scene::is_photometric().
+/// in W/(m² sr), or in cd/m² if Scene::is_photometric().
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace troffer::api {
 
-/// A place or a direction: x, y, z.
+/// A position or a direction: x, y, z.
 using Point = std::array<double, 3>;
 
 /// Linear colour: red, green, blue.
@@ -22,9 +22,9 @@ using Transform = std::array<std::array<double, 4>, 3>;
 /// The transform that changes nothing.
 inline constexpr Transform identity{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
-/// Receives the fraction of the work that is done, 0 to 1, never falling. It is called about twenty
-/// times a second by the thread that called the library. It returns false to stop the work. What it
-/// throws stops the work too and is thrown to the caller.
+/// A function that receives the fraction of the work that is done, 0 to 1, which never falls. The
+/// thread that called the library calls it about twenty times a second. If it returns false, the
+/// work stops. If it throws, the work stops and the caller receives the exception.
 using Progress = std::function<bool(double fraction)>;
 
 }  // namespace troffer::api

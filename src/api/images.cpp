@@ -1,4 +1,4 @@
-// Pictures as arrays: files and comparison.
+// Images of the public interface: read, write, compare.
 #include "api/values.h"
 #include "base/error.h"
 #include "compare/compare.h"

@@ -54,7 +54,7 @@ Kj92Settings kj92_of(const Kj92Options& o, const troffer::Scene& scene) {
   return s;
 }
 
-// The table's names, as Method::names() lists them: "a, b or c".
+// Splits the text of Method::names(), "a, b or c".
 std::vector<std::string> method_names() {
   std::string all = Method::names();
   const size_t last = all.find(" or ");

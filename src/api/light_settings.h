@@ -1,4 +1,6 @@
-// The façade's options of methods as those of the renderer.
+// Converts the public LightOptions to options of the renderer and checks their ranges. render() and
+// measure() of the public interface use it. All functions throw UsageError that names an unknown or
+// invalid value.
 #pragma once
 
 #include <string>
@@ -10,14 +12,13 @@
 
 namespace troffer::api {
 
-// UsageError names what is unknown or out of range.
 Method method_of(const LightOptions& options);
 Indirect indirect_of(const LightOptions& options);
 void check_ranges(const LightOptions& options);
-// `scene`: whose lights Kj92Options::select names.
+// `scene` holds the lights that Kj92Options::select names.
 Kj92Settings kj92_of(const Kj92Options& options, const troffer::Scene& scene);
 
-// Sets what pictures and measurements have in common.
+// Sets the options that pictures and measurements have in common.
 template <class Options>
 void set_light(const LightOptions& from, const troffer::Scene& scene, Options& to) {
   check_ranges(from);
@@ -30,7 +31,7 @@ void set_light(const LightOptions& from, const troffer::Scene& scene, Options& t
   to.seed = from.seed;
 }
 
-// The radiosity that a method stands on; null for other methods, and where `stop` was set.
+// Returns the radiosity solution that the method needs. Null if it needs none or `stop` is set.
 template <class Options>
 std::unique_ptr<Preparation> prepared_for(const PreparedScene& scene, const Options& o,
                                           const StopFlag& stop) {

@@ -1,4 +1,4 @@
-// measure(): illuminance at points by the façade's options.
+// measure() of the public interface.
 #include "render/measure.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ std::vector<MeasuringPoint> measuring_points(const std::vector<MeasurePoint>& po
   for (size_t i = 0; i < points.size(); ++i) {
     const std::string owner = fmt::format("point {}: its ", i);
     const Vec3d normal = direction(points[i].normal, owner + "normal");
-    (void)normal;  // kept as it was given
+    (void)normal;  // checked only: the normal keeps its given length
     made.push_back({place(points[i].position, owner + "position"), Vec3(vec(points[i].normal))});
   }
   return made;

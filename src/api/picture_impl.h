@@ -1,4 +1,5 @@
-// Implementation of the façade's Picture.
+// Data behind the public class Picture: layers of the renderer and converted statistics. render()
+// fills it in, and picture.cpp reads it. Copies of a Picture share one Impl.
 #pragma once
 
 #include "render/render.h"
@@ -8,10 +9,11 @@ namespace troffer::api {
 
 struct Picture::Impl {
   RenderResult result;
-  RenderStatistics statistics;  // the façade's form of the result's
+  RenderStatistics statistics;  // statistics_of(result)
 };
 
-// The façade's form of a result's statistics. build_seconds: of the scene, 0 where it was there.
+// Converts a result's statistics to the public type. `build_seconds` is the time to prepare the
+// scene, 0 if it was prepared already.
 RenderStatistics statistics_of(const RenderResult& result, double build_seconds);
 
 }  // namespace troffer::api

@@ -1,4 +1,4 @@
-// render(): a picture by the façade's options.
+// render() of the public interface.
 #include "render/render.h"
 
 #include <atomic>
@@ -30,7 +30,7 @@ Aov aov_named(const std::string& name) {
   throw UsageError("there is no layer '" + name + "'" + did_you_mean(name, layer_names()));
 }
 
-// kj92 with no first rays samples no source: the picture is the radiosity solution.
+// With 0 initial rays, kj92 samples no source: the picture shows the radiosity solution.
 void set_shadow_rays(int rays, troffer::RenderOptions& o) {
   in_range(rays, 0, most_shadow_rays, "shadow_rays");
   if (rays == 0 && o.method != Method::kj92)
@@ -42,7 +42,7 @@ void set_shadow_rays(int rays, troffer::RenderOptions& o) {
   tree.most_rays = std::max(tree.most_rays, tree.initial_rays);
 }
 
-// Methods without refinement get as many viewing rays as the wanted error takes.
+// Gives methods without refinement enough viewing rays to reach the error limit.
 void set_error_limit(const RenderOptions& from, troffer::RenderOptions& o) {
   constexpr int enough = 1 << 16;
   if (from.error_limit != 0) in_range(from.error_limit, 1e-6, 10, "error_limit");
@@ -73,7 +73,8 @@ troffer::RenderOptions options_of(const RenderOptions& from, const troffer::Scen
   return o;
 }
 
-// Calls progress with the fraction done, which must not fall.
+// Passes the fraction done from the working thread to the caller's progress function. The fraction
+// never falls.
 class Reporter {
  public:
   explicit Reporter(const Progress& progress) : progress_(progress) {}
@@ -89,7 +90,7 @@ class Reporter {
   double shown_ = 0;
 };
 
-// The work of render(), on its own thread. `camera`: null: the scene's first.
+// Does the work of render() on the working thread. If `camera` is null, uses Scene::camera().
 void render_picture(Scene& scene, const Camera* camera, const RenderOptions& options,
                     const troffer::RenderOptions& asked, Reporter& reporter,
                     const StopFlag& stopped, Picture::Impl& made) {
@@ -100,7 +101,7 @@ void render_picture(Scene& scene, const Camera* camera, const RenderOptions& opt
                                                  : camera_in(script.scene(), scene.camera());
   const std::shared_ptr<const PreparedScene> prepared = script.prepared();
   troffer::RenderOptions o = asked;
-  // Selected lights are numbered as in what is rendered, where lights in one place are joined.
+  // The prepared scene joins lights in one place, so the selected lights have other numbers there.
   o.kj92.selection.only = kj92_of(options.light.kj92, prepared->scene).selection.only;
   const double build =
       was_prepared ? 0 : std::chrono::duration<double>(Clock::now() - start).count();

@@ -1,4 +1,5 @@
-// Implementation of the façade's Scene and Camera.
+// Data behind the public classes Scene and Camera, and helpers that the files of Scene share.
+// Lengths are in metres. Positions count from Scene::origin of the renderer's scene.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +15,25 @@ namespace troffer::api {
 
 struct Camera::Impl {
   troffer::Camera camera;
-  Vec3d origin;  // that its position counts from
+  Vec3d origin;  // point from which the camera's position counts, m
 };
 
 struct Scene::Impl {
   ScriptScene script;
-  std::optional<uint32_t> grey{};  // number of the material of shapes that name none
+  std::optional<uint32_t> grey{};  // number of the material for shapes without one
 
-  // Number of the material that a shape names; adds the grey one for "". UsageError where there is
-  // none of that name.
+  // Returns the number of the material of that name. For "", adds the grey one if necessary. Throws
+  // UsageError for an unknown name.
   uint32_t material_for(const std::string& name);
-  // UsageError where the texture does not exist.
+  // Returns the index of a texture, or no_texture for -1. Throws UsageError if it does not exist.
   int32_t texture_for(TextureId texture) const;
-  // Emission of a shape of that name. UsageError for values without meaning.
+  // Returns the emission of a shape, named after the shape if it has no name of its own. Throws
+  // UsageError for an invalid radiance or texture.
   std::optional<EmissionSpec> emission_for(const std::optional<Emission>& emission,
                                            const std::string& shape) const;
 };
 
-// The camera as it stands in a scene of that origin.
+// Returns the camera with its position relative to the scene's origin.
 troffer::Camera camera_in(const troffer::Scene& scene, const Camera& camera);
 
 }  // namespace troffer::api

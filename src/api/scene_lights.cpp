@@ -1,4 +1,4 @@
-// Scene: lamps, skies, surroundings and luminaires that a program adds.
+// Scene: adds lights without a surface, skies, environment images and luminaires.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,13 +65,13 @@ DaylightOptions daylight_options(const AddedLight& light) {
   o.ground = light.ground;
   o.environment_rotation_deg = light.environment_rotation;
   o.light_radius = light.light_radius;
-  // Darkness stays where no sky is asked for.
+  // Without a request for a sky, a dark scene stays dark.
   if (o.sky.empty() && o.sun.empty() && o.at.empty() && o.weather.empty()) o.sky = "none";
   return o;
 }
 
-// A direction in the plane C0: the scene's x axis, or y where the nadir lies along x, as far as it
-// is perpendicular to the nadir, turned about the nadir.
+// Returns a direction in half-plane C0: the part of the scene's x axis that is perpendicular to the
+// nadir, turned about the nadir. If the nadir lies along x, starts from the y axis.
 Vec3d luminaire_axis(const Vec3d& nadir, double rotation_deg) {
   const Vec3d x = std::abs(nadir.x) < 0.999 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
   const Vec3d u = normalize(x - nadir * dot(x, nadir)), v = cross(nadir, u);

@@ -1,4 +1,4 @@
-// Scene: materials and textures.
+// Scene: adds and changes materials and textures.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ BackFaces back_faces_of(BackFace face) {
                                    : BackFaces::shown;
 }
 
-// One row per number that may be changed: where it is kept, and how it is called.
+// One row per number that may change: its name and its member.
 struct NumberRow {
   MaterialNumber which;
   const char* name;
@@ -65,7 +65,7 @@ const NumberRow& row_of(MaterialNumber which) {
   throw UsageError("there is no such number of a material");
 }
 
-// A material's values, checked; the name is for messages.
+// Checks a public Material and converts it. Messages name the material.
 class MaterialReader {
  public:
   MaterialReader(const Scene::Impl& scene, const std::string& name, const Material& from)

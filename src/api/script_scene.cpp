@@ -30,7 +30,7 @@ Scene& ScriptScene::change() {
   return scene_;
 }
 
-// A new light takes the dimmer that others of its name have.
+// A new light takes the dimmer of older lights of its name.
 void ScriptScene::note_new_lights() {
   const size_t known = dimmed_.size();
   for (size_t i = known; i < scene_.lights.size(); ++i) {
@@ -162,7 +162,7 @@ std::shared_ptr<const PreparedScene> ScriptScene::prepared() {
   if (prepared_) return prepared_;
   if (bounds(scene_).is_empty() && scene_.lights.empty())
     throw UsageError("the scene is empty: it has neither surfaces nor lights");
-  // Files are joined when they are loaded.
+  // Lights of files were joined when the file was loaded.
   prepared_ = std::make_shared<const PreparedScene>(up_ ? with_joined_lights(scene_) : scene_);
   return prepared_;
 }

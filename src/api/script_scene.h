@@ -1,5 +1,6 @@
-// A scene that changes between pictures: what may be changed, and what is built from it when it is
-// next needed. The façade's Scene holds one.
+// A scene that changes between pictures. It keeps dimmers by light and builds the acceleration
+// structures when they are next needed. The public class Scene holds one. Units are those of the
+// renderer's Scene.
 #pragma once
 
 #include <memory>
@@ -16,53 +17,55 @@
 
 namespace troffer {
 
-// Not for use from several threads at once. Copies share what was built.
+// Not thread-safe. Copies share the prepared scene until one of them changes.
 class ScriptScene {
  public:
-  // Loads a file. Errors: import_scene's.
+  // Loads a file. Throws what import_scene() throws.
   ScriptScene(const std::string& file, const ImportOptions& options);
-  // An empty scene, to be built.
+  // Makes an empty scene, to be built.
   ScriptScene(const Vec3& up, bool is_photometric);
 
   const Scene& scene() const { return scene_; }
-  // For changes. Discards what was built. Call note_new_lights() after lights have been appended.
+  // Returns the scene for changes and discards the prepared scene. Call note_new_lights() after
+  // appending lights.
   Scene& change();
   void note_new_lights();
 
-  // Upward direction: of a built scene as it was given, else decide_up()'s.
+  // Upward direction: the given one for a built scene, that of decide_up() for a file.
   Vec3 up() const;
-  // Chooses Scene::origin by a box in the file's coordinates, unless positions count from it
-  // already.
+  // Chooses Scene::origin for a box in the caller's coordinates, m. Does nothing if the scene has
+  // positions already, or for a file.
   void settle_origin(const Boxd& box);
 
-  // Names of lights, each once, in the order of the file.
+  // Names of lights, each once, in the order of Scene::lights.
   std::vector<std::string> light_names() const;
-  // Numbers of the lights of that name; UsageError where there is none.
+  // Indices of the lights of that name. Throws UsageError if there are none.
   std::vector<size_t> lights_named(const std::string& name) const;
-  // Factor on the radiance that the file or set_radiance() gives: at least 0, finite.
+  // Factor on the radiance of the file or of set_radiance(); finite, at least 0.
   double dimmer(const std::string& name) const;
   void set_dimmer(const std::string& name, double dimmer);
-  // Sets the dimmer of lights whose name fits a pattern (base/wildcard.h); UsageError where none
-  // does.
+  // Sets the dimmer of lights whose name fits a pattern (base/wildcard.h). Throws UsageError if
+  // none does.
   void dim(const std::string& pattern, double dimmer);
-  // Like Light::radiance, undimmed.
+  // Light::radiance at dimmer 1.
   Rgb radiance(const std::string& name) const;
   void set_radiance(const std::string& name, Rgb radiance);
 
-  // Number of the material of that name; UsageError where there is none, or several.
+  // Index of the material of that name. Throws UsageError if there is none or several.
   size_t material_named(const std::string& name) const;
 
-  // Adds a sky; north as make_compass() takes it.
+  // Adds a sky. make_compass() defines `north_deg`.
   void add_sky(const SkyRequest& request, double north_deg);
-  // Adds light as the program's options do: troffer::add_daylight, with its errors, after which
-  // the scene is as it was. Lights keep their dimmers by name.
+  // Adds light by troffer::add_daylight() and throws what it throws; the scene is then unchanged.
+  // Lights keep their dimmers by name.
   void add_light(const DaylightOptions& options);
 
-  // The camera of that name, or the first one for ""; where the scene has none, one that frames it.
-  // UsageError where none has this name.
+  // Returns the camera of that name; for "" the first one, or one that frames the scene if it has
+  // none. Throws UsageError for an unknown name.
   Camera camera(const std::string& name);
 
-  // Everything that rays need; built where something has changed since the last call.
+  // Returns the scene with everything that rays need. Builds it if the scene changed since the last
+  // call. Throws UsageError if the scene is empty.
   std::shared_ptr<const PreparedScene> prepared();
   bool is_prepared() const { return prepared_ != nullptr; }
 
@@ -75,8 +78,8 @@ class ScriptScene {
   void set_dimmers(const std::vector<size_t>& lights, double dimmer);
 
   Scene scene_;
-  std::optional<Vec3> up_;      // of a built scene
-  std::vector<Dimmed> dimmed_;  // by light
+  std::optional<Vec3> up_;      // empty for a scene from a file
+  std::vector<Dimmed> dimmed_;  // one per light of scene_
   std::shared_ptr<const PreparedScene> prepared_;
 };
 

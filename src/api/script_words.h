@@ -1,4 +1,5 @@
-// Messages about the program's options, in the words of programs that use the library.
+// Rewrites messages that name command-line options for callers of the library, who know them as
+// names in C++ or Python. Used wherever the public interface calls code of the program.
 #pragma once
 
 #include <string>
@@ -7,10 +8,10 @@
 
 namespace troffer {
 
-// Replaces "--some-option" by some_option.
+// Returns the message with "--some-option" replaced by "some_option".
 std::string in_script_words(const std::string& message);
 
-// Runs an action whose UsageErrors name options of the program.
+// Runs an action and rewrites the UsageErrors that it throws.
 template <class Action>
 auto with_script_words(const Action& action) {
   try {

@@ -1,4 +1,5 @@
-// The façade's plain types as those of the rooms, and checks of what programs hand over.
+// Conversions between plain types of the public interface and types of the renderer, with checks of
+// the values that callers pass. All files of api/ use them. Lengths are in metres.
 #pragma once
 
 #include <string>
@@ -30,22 +31,22 @@ inline Color color(const Rgb& c) {
 }
 Affine affine(const Transform& t);
 
-// All of these throw UsageError; `what` names the value in the message.
+// The functions below throw UsageError for invalid values; `what` names the value in the message.
 
-// The value, which must lie between two others.
+// Returns a value that lies between `least` and `most`.
 double in_range(double value, double least, double most, const std::string& what);
-// A colour of reflectance: channels from 0 to 1.
+// Returns a reflectance, with channels from 0 to 1.
 Rgb share(const Color& c, const std::string& what);
-// Emission: channels of at least 0, finite.
+// Returns an emission, with finite channels of at least 0.
 Rgb emitted(const Color& c, const std::string& what);
-// A place whose coordinates are finite and below 1e9 m.
+// Returns a position, with coordinates of at most 1e9 m.
 Vec3d place(const Point& p, const std::string& what);
-// A unit vector along a direction, which must have a length.
+// Returns the unit vector of a finite direction of length above 0.
 Vec3d direction(const Point& p, const std::string& what);
 
-// Pixels in the rooms' form.
+// Returns a public image as the renderer's. Throws if its array does not have its size.
 troffer::Image image_of(const Image& image);
-// `picture` decides about the exposure where none is given.
+// Without a given exposure, the brightness of `picture` decides.
 Display display_of(const DisplayOptions& options, const troffer::Image& picture);
 
 }  // namespace troffer::api

@@ -10,7 +10,7 @@ namespace troffer {
 
 namespace {
 
-// Tells a waiting thread that the work has ended.
+// Signals a waiting thread that the work has ended.
 class Ending {
  public:
   void announce() {
@@ -18,6 +18,7 @@ class Ending {
     has_ended_ = true;
     changed_.notify_all();
   }
+  // Waits for at most 50 ms. Returns true if the work has ended.
   bool wait() {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, std::chrono::milliseconds(50), [&] { return has_ended_; });

@@ -1,5 +1,5 @@
-// Work on a thread of its own while the caller's thread reports progress and may stop it. Used by
-// api/ for pictures and measurements.
+// Runs work on a separate thread while the caller's thread reports progress and may stop it.
+// render() and measure() of the public interface use it.
 #pragma once
 
 #include <functional>
@@ -8,9 +8,9 @@
 
 namespace troffer {
 
-// Runs work(stop) on a thread of its own while the calling thread calls look() twenty times a
-// second, and once more at the end. What look() throws sets `stop` and is thrown after the work has
-// ended; otherwise what the work throws. The work must obey the flag.
+// Runs work(stop) on a separate thread. Meanwhile the calling thread calls look(stop) twenty times
+// a second, and once more at the end. If look() throws, sets `stop` and rethrows after the work has
+// ended; otherwise rethrows what the work threw. The work must obey the flag.
 void run_watched(const std::function<void(StopFlag& stop)>& work,
                  const std::function<void(StopFlag& stop)>& look);
 

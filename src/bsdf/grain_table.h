@@ -17,7 +17,7 @@ struct GrainTable {
   ClearCoat over;  // without its row
   // Two equal rows each, because AlbedoRow interpolates between two.
   std::array<float, 2 * table_cosines> even{}, twice{};
-  float average = 0;  // of even
+  float average = 0;  // mean of `even`, for AlbedoRow
 
   AlbedoRow even_row() const { return {even.data(), 0, average}; }
   AlbedoRow twice_row() const { return {twice.data(), 0, 0}; }

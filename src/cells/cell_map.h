@@ -115,7 +115,7 @@ class CellMap {
     float size = 0;
     bool is_divided = false;  // something stands in the voxel: hits must see the cell
     bool is_halved = false;   // smaller cells replace it
-    bool is_narrow = false;   // as far as resolve_narrow() is on
+    bool is_narrow = false;   // on a sub-cell feature; only while resolve_narrow() is on
   };
   struct Hits {
     std::array<CellHit, hits_per_cell> hits;

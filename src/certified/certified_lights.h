@@ -50,16 +50,16 @@ struct CertifiedLightsScratch {
 // of its own.
 class CertifiedLights {
  public:
-  // gloss_points: as for CertifiedSources.
+  // `gloss_points` is passed to CertifiedSources.
   CertifiedLights(const PreparedScene& scene, const DrawingBudget& budget, uint32_t gloss_points)
       : scene_(scene), sources_(scene, budget.draws > 0, gloss_points), budget_(budget) {}
 
   const CertifiedSources& sources() const { return sources_; }
-  // As CertifiedSources::set_occluders().
+  // Calls CertifiedSources::set_occluders().
   void set_occluders(const Occluders& occluders) { sources_.set_occluders(occluders); }
 
   // Starts a batch: discards the facets found in the last one, so that results do not depend on
-  // what a thread did before.
+  // earlier batches of the thread.
   void forget(CertifiedLightsScratch& s) const { s.found.assign(sources_.all().size(), {}); }
   // Adds the light of all sources at s.hits to `out`, then empties s.hits.
   void illuminate(CertifiedLightsScratch& s, RadianceBatch& out, Counters& counters) const;

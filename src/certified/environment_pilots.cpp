@@ -11,8 +11,8 @@ namespace {
 
 // Pilot rays of a batch to the sky; suns get half as many triples.
 constexpr size_t pilots = 64;
-// Where no pilot ray arrives in a scene that seems shut out: one ray for this many hits, at most
-// most_pilots.
+// Further pilot rays if none arrives in a scene that seems shut out: one for every hits_of_pilot
+// hits, at most most_pilots.
 constexpr size_t hits_of_pilot = 2, most_pilots = 1024;
 // Share of light that must arrive before clutter is tested. Below it, rays err by much and proofs
 // may cost more.

@@ -11,8 +11,8 @@ namespace troffer {
 // Estimated shares of unoccluded environment light that arrive at a batch's hits. The shares are
 // never exactly 0 or 1.
 struct EnvironmentShare {
-  double open = 0.5;                      // of all environment light
-  double open_sky = 0.5, open_sun = 0.5;  // of skies and images, of suns
+  double open = 0.5;                      // share of all environment light
+  double open_sky = 0.5, open_sun = 0.5;  // share of skies and images; share of suns
   // Mean variance of the visibility of one sun between two rays from one hit.
   double spread_of_sun = 0.25;
   // Variance of sun visibility, and of sky light, between the hits of one pixel, beyond that within

@@ -4,7 +4,8 @@
 // neighbouring triangles.
 //
 // LightGroups estimates the unoccluded light of all groups at a cluster in one vectorized pass.
-// That takes a few nanoseconds per group, less than a light tree for up to some thousand groups.
+// The pass takes a few nanoseconds per group. A light tree is faster only above some thousand
+// groups.
 #pragma once
 
 #include <cstdint>

@@ -32,7 +32,7 @@ struct CellBuilderOptions {
   // Limit of the number of cells; with more, make_cells() returns null.
   double most_cells = std::numeric_limits<double>::infinity();
   ProcessGroup* group = nullptr;  // processes that make the same cells together; may be null
-  GatheringPoints points{};       // how the pilot's points gather; most_rays 0: there are none
+  GatheringPoints points{};       // gather rays of measuring points; most_rays 0: no points
   // Once set, no further rows are made. The light that only they would bring is missing;
   // CellStatistics::unresolved estimates its share. Null: never set.
   const StopFlag* enough = nullptr;

@@ -19,7 +19,7 @@ struct CellDirectLight {
   std::vector<float> half_difference;  // luminance: half the difference of the two halves of hits
 };
 
-// How direct light is computed. Results are incomplete once `stop` is set.
+// Inputs for the direct light of cells. Results are incomplete once `stop` is set.
 struct CellLighting {
   const GatherWalks& walks;
   const DirectLight& direct;

@@ -76,11 +76,11 @@ bool GatherFits::is_neighbour(uint32_t r, uint32_t o, Part part) const {
 
 // Returns the mean number of rays of records around, in the record's own half of the pixels. Fits
 // weight a record by its rays over this mean.
-// Weights by rays dilute the luck of first rays that met something bright, since such records get
-// more. But light itself may call for more rays (in the dark beside a caustic), and whole places
-// must not count for more; hence the quotient.
-// The other half's numbers of rays follow from what this half has met. With them, a record would
-// count for less where its half is bright.
+// Records whose first rays met something bright by chance get more rays, so weights by rays reduce
+// the effect of that chance. But light itself may call for more rays, as in the dark next to a
+// caustic, and a whole region must not count for more. Hence the quotient.
+// The numbers of rays in the other half follow from the results of this half. With them, a record
+// would count for less where its own half is bright.
 float GatherFits::usual_rays(int x, int y, uint32_t r) const {
   float rays = 0, records = 0;
   const int half = half_of(x, y);
@@ -167,8 +167,9 @@ FittedLight GatherFits::solved(const LinearFit& fit, const Surroundings& s) {
 }
 
 // Returns the allowed error of the luminance of one of the record's sums, from all light that the
-// pixel sees there. around: luminance of that sum by its surroundings. By the record's own few
-// rays, bright records would get few further rays and the dark ones beside them many.
+// pixel sees there. `around` is the luminance of that sum, estimated from the neighbours. An
+// estimate from the record's own few rays would give bright records few further rays and their dark
+// neighbours many.
 float GatherFits::allowed_error(const GatherRecord& r, Part part, float around) const {
   const Part other = part == &GatherRecord::matte ? &GatherRecord::gloss : &GatherRecord::matte;
   const float own =

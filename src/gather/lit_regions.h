@@ -37,7 +37,7 @@ struct LitRegion {
   Vec3 centre;
   float radius = 0;
   Vec3 normal;            // mean over its surfaces: short where these face different ways
-  float mean_square = 0;  // of the irradiance that a ray brings that meets the region
+  float mean_square = 0;  // mean square irradiance of one ray that meets the region
 };
 
 // Pilot hits within one lit region: the targets of visibility tests.
@@ -73,7 +73,7 @@ class LitRegions {
  private:
   const Tracer* tracer_ = nullptr;
   std::vector<LitRegion> places_;
-  std::vector<LitRegionHits> hits_;  // of each
+  std::vector<LitRegionHits> hits_;  // one per lit region
   float rest_ = 0;
 };
 

@@ -82,9 +82,9 @@ std::vector<uint32_t> RowPlan::cells_to_resolve(int bounces) {
   return cells;
 }
 
-// Decided by the cell's importance. Few rays share cells in the open and between small things.
-// There, 16 rays from each cell and from all that they hit would be an endless tree; one ray each
-// is a path.
+// The cell's importance decides. In the open and between small things, few rays share cells. 16
+// rays from each cell there, and from all cells that they hit, would grow into an endless tree.
+// With one ray each, the tree is a path.
 uint32_t RowPlan::first_rays(uint32_t cell) const {
   if (cell >= importance_.size()) return 1;
   const double worth = double(importance_[cell]) / of_ray_;

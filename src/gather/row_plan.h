@@ -15,7 +15,7 @@ double coarseness(double error, double fine);
 
 class RowPlan {
  public:
-  static constexpr size_t pilot_rays = 1 << 17;  // of all pilot places together, about
+  static constexpr size_t pilot_rays = 1 << 17;  // about, for all pilot places together
   static constexpr uint32_t rays_of_row = 16;    // first ones of a cell that matters
   static constexpr size_t most_cells = 1 << 21;  // with more, no rays are planned
   static constexpr double fine_error = 0.05;

@@ -24,10 +24,10 @@ constexpr float least_single_precision_sr = 2e-3f;
 constexpr float least_rectangle_sr = 1e-8f;
 
 // A receiver relative to a planar piece.
-struct PlanarView {  // of the receiver over the plane, metres, >= 0
-  double height;     // of the receiver over the plane, on the side it is on
+struct PlanarView {
+  double height;  // distance of the receiver from the plane, metres
   bool is_front;
-  bool is_visible;  // that side emits
+  bool is_visible;  // the receiver's side of the plane emits
   bool is_far;
 
   PlanarView(const LightPrimitive& p, const Vec3& x) {

@@ -16,7 +16,7 @@ namespace troffer {
 
 struct MethodInput;
 
-// How the light of a picture or of measuring points is computed.
+// Ways to compute the light of a picture or of measuring points.
 enum class PlannedLight : uint8_t {
   path_tracing,   // by PathIntegrator
   cells,          // certified direct light, reflected light gathered from cells

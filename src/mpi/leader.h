@@ -112,7 +112,7 @@ class Leader final : public ProcessGroup {
   Others others_;
   std::map<uint64_t, Sent> sent_;
   struct {
-    bool has_stopped = false;  // all processes were told to stop
+    bool has_stopped = false;  // all processes got the message to stop
     Clock::time_point last_alive;
   } said_;
   MessageTransport transport_;  // last: it uses all other members

@@ -1,5 +1,5 @@
-// Arguments that arrive as keywords: conversion by pybind11's rules, TypeError for wrong types, and
-// tables of arguments by name.
+// Converts keyword arguments by pybind11's rules, with TypeError for wrong types. Tables map names
+// of arguments to members of options. Used by the functions that take many keywords.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -14,7 +14,7 @@
 
 namespace troffer::bindings {
 
-// The value as a T; TypeError names the argument.
+// Converts the value to a T. Throws TypeError that names the argument.
 template <class T>
 T taken(const pybind11::handle& value, const std::string& name) {
   pybind11::detail::make_caster<T> caster;
@@ -24,18 +24,18 @@ T taken(const pybind11::handle& value, const std::string& name) {
   return pybind11::detail::cast_op<T>(std::move(caster));
 }
 
-// Strict: True or False, not any object that has a truth value.
+// Accepts True and False only, not other objects with a truth value.
 template <>
 bool taken<bool>(const pybind11::handle& value, const std::string& name);
 
-// Three numbers, or one for all channels.
+// Accepts three numbers, or one for all channels.
 api::Color color_taken(const pybind11::handle& value, const std::string& name);
 
-// One function per argument, which sets a part of the options.
+// One function per argument, which sets a member of the options.
 template <class Options>
 using ArgumentTable = std::map<std::string, std::function<void(Options&, const pybind11::handle&)>>;
 
-// An entry of a table: sets a member by taken().
+// Returns the entry of a table that sets a member by taken().
 template <class Options, class T>
 typename ArgumentTable<Options>::value_type argument(const std::string& name, T Options::*member) {
   return {name, [name, member](Options& o, const pybind11::handle& value) {
@@ -43,7 +43,7 @@ typename ArgumentTable<Options>::value_type argument(const std::string& name, T 
           }};
 }
 
-// Sets an option where the table has the name; else returns false.
+// Sets the option of that name. Returns false if the table does not have the name.
 template <class Options>
 bool set_argument(const ArgumentTable<Options>& table, const std::string& name,
                   const pybind11::handle& value, Options& options) {

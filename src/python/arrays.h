@@ -1,4 +1,5 @@
-// numpy arrays as the façade's images and lists of numbers, and views of what the library owns.
+// Conversions from numpy arrays to images and lists of numbers of the C++ library, and numpy views
+// of pixels that the library owns. Row 0 of images is on top.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -16,21 +17,23 @@ namespace troffer::bindings {
 
 using Pixels = pybind11::array_t<float, pybind11::array::c_style | pybind11::array::forcecast>;
 
-// (height, width, 3); UsageError for other shapes.
+// Converts an array (height, width, 3). Throws UsageError for other shapes.
 api::Image image_of(const Pixels& array);
 
-// (height, width) or (height, width, channels): uint8 as bytes, other numbers as floats. Not
-// checked beyond the shape.
+// Converts an array (height, width) or (height, width, channels): uint8 to bytes, other numbers to
+// floats. Throws UsageError for other shapes; Scene::add_texture() checks the rest.
 api::TextureImage texture_of(const pybind11::array& array);
 
-// A view that keeps its owner: (height, width, 3), or (height, width) of one channel.
+// Returns a view (height, width, 3), or (height, width) for one channel. It keeps its owner alive.
 pybind11::array view_of(const api::PixelView& view, const pybind11::object& owner);
 
-// Rows of `columns` numbers; UsageError names the argument where the shape is another one.
+// Converts an array (n, columns); None gives no rows. Throws UsageError for other shapes and
+// TypeError for other objects; both name the argument.
 template <class T, size_t columns>
 std::vector<std::array<T, columns>> rows_of(const pybind11::object& value, const std::string& name);
 
-// (n, 3) whole numbers from 0; TypeError for others.
+// Converts an array (n, 3) of whole numbers. Throws TypeError for other numbers and UsageError for
+// other shapes and for numbers outside [0, 2^32).
 std::vector<std::array<uint32_t, 3>> triangles_of(const pybind11::object& value);
 
 }  // namespace troffer::bindings

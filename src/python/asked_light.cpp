@@ -14,7 +14,7 @@ namespace py = pybind11;
 
 namespace {
 
-// The path that a str or an os.PathLike holds.
+// Returns the path in a str or an os.PathLike.
 std::string path(const py::handle& value) {
   return py::module_::import("os").attr("fspath")(value).cast<std::string>();
 }
@@ -24,7 +24,7 @@ std::string text(const py::handle& value, const char* expected) {
   return value.cast<std::string>();
 }
 
-// The shortest text that reads as the same number.
+// Returns the shortest text that reads back as the same number.
 std::string number(const py::handle& value) {
   return fmt::format("{}", py::float_(py::reinterpret_borrow<py::object>(value)).cast<double>());
 }
@@ -33,7 +33,7 @@ std::string joined(const std::vector<std::string>& parts) {
   return fmt::format("{}", fmt::join(parts, ","));
 }
 
-// Items of a sequence; a text is none.
+// Returns the items of a sequence. Throws TypeError for a str and for other objects.
 std::vector<py::object> items(const py::handle& value, const char* expected) {
   if (py::isinstance<py::str>(value) || !py::hasattr(value, "__iter__"))
     throw py::type_error(expected);
@@ -48,7 +48,8 @@ std::string numbers(const py::handle& value, const char* expected) {
   return joined(parts);
 }
 
-// A path, or (path, numbers…) with at most `most` numbers.
+// Accepts a path, or a tuple or list of a path and at most `most` numbers. None stands for an empty
+// number; empty ones at the end are dropped.
 std::vector<std::string> path_and_numbers(const py::handle& value, size_t most,
                                           const char* expected) {
   if (!py::isinstance<py::tuple>(value) && !py::isinstance<py::list>(value)) return {path(value)};
@@ -61,7 +62,7 @@ std::vector<std::string> path_and_numbers(const py::handle& value, size_t most,
   return parts;
 }
 
-// A datetime or its text.
+// Accepts a datetime with a time zone, or its text.
 std::string moment(const py::handle& value) {
   if (!py::hasattr(value, "isoformat")) return text(value, "at: its time is a text or a datetime");
   if (value.attr("utcoffset")().is_none())
@@ -90,7 +91,8 @@ std::string portal(const py::handle& value) {
   return joined(corners);
 }
 
-// One portal or several. The first item of several holds no number.
+// Accepts one portal or several. The first item of one portal is a corner, so its items are
+// numbers. The first item of several is a name or a list of corners.
 std::vector<std::string> portals(const py::handle& value) {
   if (py::isinstance<py::str>(value)) return {portal(value)};
   const std::vector<py::object> all = items(value, "portal: a name, or four corners (x, y, z)");
@@ -107,7 +109,8 @@ std::vector<std::string> portals(const py::handle& value) {
 std::string environment(const py::handle& value) {
   std::vector<std::string> parts =
       path_and_numbers(value, 1, "environment: a path, or (path, scale)");
-  // A scale at the end keeps a comma in the file's name from being read as the one before a scale.
+  // An explicit scale: otherwise a comma in the file name would be taken for the one before a
+  // scale.
   if (parts.size() == 1) parts.emplace_back("1");
   return joined(parts);
 }

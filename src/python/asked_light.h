@@ -1,4 +1,5 @@
-// Scene.add_light(): keyword arguments as the façade's AddedLight.
+// Scene.add_light() of Python: converts keyword arguments to AddedLight, whose texts have the form
+// of the program's options.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -8,11 +9,11 @@
 
 namespace troffer::bindings {
 
-// The arguments in the words of the program's options. TypeError for values of the wrong type,
-// UsageError for values without meaning.
+// Converts the arguments. Throws TypeError for unknown names and wrong types, and UsageError for
+// invalid values.
 api::AddedLight added_light(const pybind11::kwargs& asked);
 
-// The text of help(Scene.add_light).
+// Text of help(Scene.add_light).
 extern const char* const add_light_help;
 
 }  // namespace troffer::bindings

@@ -14,7 +14,7 @@ namespace py = pybind11;
 
 namespace {
 
-// None, a name or a Material of the scene.
+// Accepts None, a name or a Material of the scene.
 std::string material_name(const py::object& value) {
   if (value.is_none()) return "";
   if (py::isinstance<MaterialHandle>(value)) return value.cast<const MaterialHandle&>().name();
@@ -31,7 +31,7 @@ std::optional<api::Emission> emission_of(const py::object& radiance, bool is_two
   return e;
 }
 
-// None, or a matrix of 3 or 4 rows of 4 numbers.
+// Accepts None, or an affine matrix (3, 4) or (4, 4).
 api::Transform transform_of(const py::object& value) {
   if (value.is_none()) return api::identity;
   const auto rows = rows_of<double, 4>(value, "transform");

@@ -16,7 +16,7 @@ namespace py = pybind11;
 
 namespace {
 
-// The lights of one name; the scene lives as long.
+// The lights of one name. Keeps the scene alive.
 struct LightHandle {
   std::shared_ptr<api::Scene> scene;
   std::string name;

@@ -28,7 +28,7 @@ constexpr ModelRow models[] = {
     {"thin_glass", api::MaterialModel::thin_glass},
 };
 
-// The model with its usual values.
+// Returns the default material of a model. Throws UsageError for an unknown name.
 Material of_model(const std::string& name) {
   std::string known;
   for (const ModelRow& row : models) {

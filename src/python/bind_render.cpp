@@ -98,7 +98,7 @@ std::unique_ptr<api::Picture> render_scene(api::Scene& s, const py::object& came
   return made;
 }
 
-// (n, 3): normals look up; (n, 6): x, y, z and normal.
+// Accepts (n, 6): position and normal; or (n, 3): positions whose normals point up.
 std::vector<api::MeasurePoint> points_of(const Points& array, const api::Point& up) {
   if (array.ndim() != 2 || (array.shape(1) != 3 && array.shape(1) != 6))
     throw api::UsageError("points are an array of shape (n, 6), or (n, 3)");

@@ -109,7 +109,7 @@ void bind_picture(py::module_& m) {
       });
 }
 
-// A view of one number of every row.
+// Returns a view of one member of all measurements.
 py::array column(const py::object& self, const double api::Measurement::*member) {
   const auto& values = self.cast<const api::Measurements&>().values;
   const double* const first = values.empty() ? nullptr : &(values.front().*member);

@@ -1,4 +1,5 @@
-// The parts of the Python module. They bind the library's façade (troffer/) and nothing else.
+// The parts of the Python module. They bind the public interface of the library (include/troffer)
+// and use no other code. module.cpp calls them.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -13,22 +14,22 @@ namespace troffer::bindings {
 
 using SceneClass = pybind11::class_<api::Scene, std::shared_ptr<api::Scene>>;
 
-// InputError (a ValueError); UsageError becomes ValueError and EnvironmentError OSError.
+// Binds InputError as a ValueError. Maps UsageError to ValueError and EnvironmentError to OSError.
 void bind_errors(pybind11::module_& m);
-// Camera, Scene, load(). Calls the four that follow it.
+// Binds Camera, Scene and load(), and calls the functions below except bind_images().
 void bind_scene(pybind11::module_& m);
 void bind_lights(pybind11::module_& m, SceneClass& scene);
 void bind_materials(pybind11::module_& m, SceneClass& scene);
 void bind_building(SceneClass& scene);
 void bind_render(SceneClass& scene);
-// Picture, Measurements.
+// Binds Picture and Measurements.
 void bind_results(pybind11::module_& m);
-// compare(), read_image(), write_image().
+// Binds compare(), read_image() and write_image().
 void bind_images(pybind11::module_& m);
 
-// Runs work(progress) without the interpreter's lock. Between pieces of work it handles signals
-// (Ctrl-C raises KeyboardInterrupt) and calls callback(fraction), which may be None, with the lock;
-// a callback that returns False stops the work, one that raises ends it.
+// Runs work(progress) without the interpreter's lock (GIL). progress() takes the lock, handles
+// signals and calls callback(fraction); `callback` may be None. Ctrl-C raises KeyboardInterrupt.
+// The work stops if the callback returns False, and ends with its exception if it raises.
 void run_for_python(const pybind11::object& callback,
                     const std::function<void(const api::Progress& progress)>& work);
 

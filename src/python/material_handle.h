@@ -1,4 +1,4 @@
-// A material of a scene as Python holds it.
+// A material of a scene, as Python code holds it. The bindings of materials and meshes use it.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 namespace troffer::bindings {
 
 struct MaterialHandle {
-  std::shared_ptr<api::Scene> scene;  // lives as long as the handle
-  std::size_t index;                  // number of the material; names may repeat
+  std::shared_ptr<api::Scene> scene;  // kept alive by the handle
+  std::size_t index;                  // in the scene; names may repeat
 
   std::string name() const;
 };

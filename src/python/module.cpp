@@ -1,4 +1,4 @@
-// import troffer
+// Entry point of the Python module troffer.
 #include "python/bindings.h"
 
 PYBIND11_MODULE(troffer, m) {

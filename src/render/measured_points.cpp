@@ -216,7 +216,7 @@ int samples_per_batch(double rays_per_sample) {
 // Paths begin with many samples, so the bias is accepted there.
 PointValues measure_points(const Integrator& integrator, const std::vector<MeasuringPlace>& places,
                            std::span<const PointPlan> plans, const PointsRun& run) {
-  constexpr double share_of_first = 0.25;  // of the time, about
+  constexpr double share_of_first = 0.25;  // approximate share of the time
   const size_t points = places.size();
   PointValues found{std::vector<PointLight>(points), std::vector<uint8_t>(points, 0),
                     std::vector<Counters>(points)};

@@ -28,7 +28,7 @@ std::vector<double> samples_at_will(const std::vector<PointLight>& found,
   const std::vector<SamplesWanted> wanted = samples_wanted(found, plans);
   std::vector<double> samples;
   for (size_t i = 0; i < found.size(); ++i)
-    // So few samples without light may mean that hardly any sample finds it.
+    // None of the few samples found light, so perhaps hardly any sample finds it.
     samples.push_back(found[i].all.illuminance_lx > 0 ? wanted[i].all
                                                       : std::numeric_limits<double>::infinity());
   return samples;

@@ -94,14 +94,14 @@ struct Varying {
   double independent = 0;  // part of the variance that does not depend on the position in the pixel
 };
 
-// What the first pass saw around a pixel; the pixel's own samples are left out.
+// Results of the first pass around a pixel, without the pixel's own samples.
 struct Surroundings {
   double mean = 0;           // mean luminance of the neighbours
   double low = 0, high = 0;  // extremes of the neighbours' means
   Varying largest;           // the neighbour with the largest variance
   Varying usual;             // the neighbour with the median variance
   // Largest variance among neighbours that differ only by a known light outline (is_apart), without
-  // the lamps' own light. What varies beside a lamp, such as a surface close to it, continues here.
+  // the lamps' own light. Such variance, as of a surface next to a lamp, continues in the pixel.
   Varying apart;
   double mean_variance = 0;
   // Variance within a pixel of the plane that fits the neighbours' means. Stratified samples err

@@ -119,7 +119,7 @@ struct RenderStatistics {
   double render_seconds = 0;      // of everything after it
   CellStatistics cells;           // empty if the method makes no cells
   bool is_by_paths = false;       // certified: paths replaced cells
-  MethodPlan plan;                // what was decided before the preparation
+  MethodPlan plan;                // decisions made before the preparation
 };
 
 // complete: all that was asked for. good_enough: RenderOptions::error_limit is met. out_of_time:

@@ -16,8 +16,8 @@ struct SeenPoint {
 };
 
 // Returns the first surface, other than panes of clear glass, on the ray through a raster position.
-// That is in pixels from the top left corner of a picture of this size. Returns nothing if the ray
-// leaves the scene.
+// The position is in pixels from the top left corner of a picture of this size. Returns nothing if
+// the ray leaves the scene.
 std::optional<SeenPoint> point_seen(const PreparedScene& scene, const Camera& camera, int width,
                                     int height, const Vec2& raster);
 

@@ -26,7 +26,7 @@ struct SurfaceRequest {
 struct FoundSurfaces {
   std::vector<AssessedSurface> surfaces;  // desks and named surfaces first, then floors
   std::vector<AssessedSurface> floors;    // all floors, assessed or not, for areas and eyes
-  std::vector<std::string> notes;         // what was left out, as sentences for people
+  std::vector<std::string> notes;         // sentences about omitted surfaces
 };
 
 // Finds floors (find_floors.h) and desks. Desks are upward faces of at least .25 m² whose shorter

@@ -35,7 +35,7 @@ enum class MaterialKind : uint8_t {
   metallic_roughness,
 };
 
-// How `roughness` becomes the GGX width alpha.
+// Relation between `roughness` and the GGX width alpha.
 enum class RoughnessMeaning : uint8_t {
   alpha,            // alpha = roughness
   alpha_is_sqrt,    // alpha = sqrt(roughness): pbrt's remaproughness

@@ -22,7 +22,7 @@ struct FormatRule {
   const char* name;
   bool is_fixed;  // the format prescribes the axis
   char axis;      // prescribed axis, or that of most files
-  double weight;  // of that convention, on the scale of hints (scene/up_hints.h)
+  double weight;  // weight of the convention among hints (scene/up_hints.h)
 };
 
 // OBJ exporters turn scenes to y by default, STL exporters keep z; pbrt and PLY files have either.

@@ -159,7 +159,7 @@ class SkyPatchDivision {
   GatherMemory& memory_;
   CertifiedCounters& counters_;
   double allowed_;  // cost of rays to the whole cell, in facets of a mask
-  double work_;     // what is left of that
+  double work_;     // part of allowed_ that is not used yet
   double won_ = 0;  // cost of rays saved by settled parts
   size_t most_;     // facets per list
 };

@@ -113,7 +113,7 @@ struct UnsettledPart {
 // Output of the stages.
 struct SourceResults {
   std::span<CellSum> sums;  // per receiver
-  RayQueue& rays;           // what only rays can settle
+  RayQueue& rays;           // rays for samples without a proof
   CertifiedCounters& counters;
   std::vector<UnsettledPart>* left = nullptr;  // null: no part may be left out
 };

@@ -1,4 +1,5 @@
-// Scenes from arrays: the same pictures as from a file, and light that closed forms give.
+// Scenes that are built from arrays: they give the same pictures as files, and light agrees with
+// closed forms.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -22,7 +23,7 @@ api::MeshData quad(const api::Point& a, const api::Point& b, const api::Point& c
   return mesh;
 }
 
-// The room of the file, by its arrays.
+// Builds the room of the file again from its arrays.
 api::Scene rebuilt(const Scene& from) {
   api::Scene scene({{0, 1, 0}, from.is_photometric});
   for (size_t i = 0; i < from.materials.size(); ++i) {
@@ -72,8 +73,9 @@ api::Image picture_of(api::Scene& scene, const std::string& method) {
   return api::render(scene, view, quick(method)).image();
 }
 
-// Irradiance below the middle of a horizontal square of side 2a at height h, over its radiance: by
-// Lambert's polygon formula 4 (a / s) atan(a / s) with s = sqrt(a² + h²).
+// Returns irradiance over radiance of a horizontal square of side 2a, at height h above a
+// horizontal receiver below its middle. Lambert's polygon formula: 4 (a / s) atan(a / s), s =
+// sqrt(a² + h²).
 double square_over_point(double a, double h) {
   const double s = std::hypot(a, h);
   return 4 * (a / s) * std::atan(a / s);
@@ -107,7 +109,7 @@ TEST_CASE("a square lamp lights the point below it as the closed form says") {
     const double expected = square_over_point(1, 2);
     CHECK(double(found.values[0].irradiance[0]) == doctest::Approx(100 * expected).epsilon(1e-3));
     CHECK(double(found.values[0].irradiance[2]) == doctest::Approx(300 * expected).epsilon(1e-3));
-    CHECK(found.values[1].illuminance == 0);  // above its back
+    CHECK(found.values[1].illuminance == 0);  // the lamp's back emits nothing
     scene.set_dimmer("lamp", 0.5);
     const auto dimmed = api::measure(scene, {{{0, 0, 0}, {0, 0, 1}}});
     CHECK(double(dimmed.values[0].irradiance[0]) == doctest::Approx(50 * expected).epsilon(1e-3));

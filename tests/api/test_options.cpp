@@ -1,4 +1,4 @@
-// Options, errors, progress and results of the façade.
+// Options, errors, progress and results of the public interface.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ api::RenderOptions small(const std::string& method) {
   return o;
 }
 
-// The message of the UsageError that an action throws; empty where it throws none.
+// Returns the message of the UsageError that an action throws; empty if it throws none.
 template <class Action>
 std::string refusal(const Action& action) {
   try {

@@ -134,8 +134,8 @@ TEST_CASE(
             2e-3 * here[i].lx + 5 * (there[i].error + here[i].error));
     }
   }
-  // There points start further off the surface, which moves the slats' shadows, for all methods
-  // alike.
+  // Far from the origin, points start further off the surface. This moves the shadows of the
+  // slats, equally for all methods.
   check_agreement(light, {1, {10240, -10240, 0}});
 }
 

@@ -131,7 +131,7 @@ TEST_CASE("objects that cannot be instances are copied; objects used once become
   REQUIRE(flat.meshes.size() == 1);
   for (const Vec3& p : flat.meshes[0].positions) CHECK(p.z == 0);
 
-  // Such a small scale that some triangles lose their area to rounding and are left out.
+  // At this small scale, some triangles lose their area to rounding and are left out.
   const Scene tiny = with(one + one + "Translate 100 100 100\nScale 1e-4 1e-4 1e-4\n" + one);
   CHECK(tiny.instances.size() == 2);
   CHECK(tiny.meshes.size() <= 1);

@@ -1,4 +1,4 @@
-"""Scenes that scripts build from arrays, and the module's stub."""
+"""Scenes that scripts build from arrays, options of methods, and the module's stub."""
 import ast
 import inspect
 import pathlib
@@ -18,14 +18,14 @@ def floor(size=5., z=0.):
 
 
 def square_over_point(a, h):
-    """Irradiance below the middle of a square of side 2a at height h, over its radiance."""
+    """Returns irradiance over radiance below the middle of a square of side 2a at height h."""
     s = np.hypot(a, h)
     return 4 * a / s * np.arctan(a / s)
 
 
 class Building(unittest.TestCase):
     def test_room_of_arrays_in_the_furnace(self):
-        """A closed box whose walls shine and reflect alike: radiance L / (1 - rho) everywhere."""
+        """In a closed box of equal, emitting walls the radiance is L / (1 - rho) everywhere."""
         scene = troffer.Scene()
         scene.add_material('wall', base_color=.5)
         corners = np.array([[x, y, z] for x in (0, 3) for y in (0, 4) for z in (0, 2.5)], float)
@@ -76,7 +76,7 @@ class Building(unittest.TestCase):
             self.assertAlmostEqual(found / lux, 1, delta=3e-3, msg=name)
 
     def test_luminaire_of_a_file(self):
-        """A point whose intensity falls as the cosine: lumens / pi straight down."""
+        """A point with cosine intensity sends lumens / pi straight down."""
         angles = np.arange(0, 91)
         candela = ' '.join(f'{v:.6f}' for v in np.cos(np.radians(angles)) * 300 / np.pi)
         text = (f'IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 91 1 1 2 0 0 0\n1 1 25\n'

@@ -1,4 +1,4 @@
-"""Light that scripts add: skies, weather, luminaires, against the program's own options."""
+"""Skies, weather and luminaires that scripts add give the same light as the program's options."""
 import csv
 import datetime
 import os
@@ -30,7 +30,7 @@ def epw():
 
 
 def even_ies(lumens):
-    """A panel's, of intensity in proportion to the cosine."""
+    """Returns the IES file of a panel whose intensity is proportional to the cosine."""
     angles = np.arange(0, 91, 1)
     cosines = ' '.join(f'{v:.6f}' for v in np.cos(np.radians(angles)) * lumens / np.pi)
     return (f'IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 91 1 1 2 .6 .6 0\n1 1 25\n'
@@ -51,7 +51,7 @@ class AddedLight(unittest.TestCase):
         return path
 
     def by_program(self, scene, *options):
-        """The first three channels of each of POINTS, as the program measures them."""
+        """Returns irradiance (r, g, b) at POINTS, measured by the program."""
         rows = [['x', 'y', 'z', 'nx', 'ny', 'nz'], *POINTS.tolist()]
         with open(self.folder / 'p.csv', 'w', newline='') as f:
             csv.writer(f).writerows(rows)
@@ -69,7 +69,7 @@ class AddedLight(unittest.TestCase):
         expected = self.by_program(scene, *options)
         measured = s.measure(POINTS, method='path', spp=64).irradiance
         self.assertGreater(expected.max(), 0)
-        np.testing.assert_allclose(measured, expected, rtol=1e-6)  # printed with so many digits
+        np.testing.assert_allclose(measured, expected, rtol=1e-6)  # digits of the printed table
         return s
 
     def test_skies_are_those_of_the_program(self):

@@ -1,4 +1,4 @@
-"""The Python module, used as its users do."""
+"""The Python module: loading, rendering, measuring, changing, and running in threads."""
 import gc
 import os
 import pathlib
@@ -99,7 +99,7 @@ class Arguments(unittest.TestCase):
             with self.assertRaises(ValueError, msg=str(wrong)):
                 scene.render(**wrong)
         with self.assertRaises(TypeError):
-            scene.render(None, 16)  # sizes are named
+            scene.render(None, 16)  # sizes are keyword arguments
         for wrong in (np.nan, np.inf, 1e9):
             with self.assertRaises(ValueError):
                 picture.save('never.png', exposure=wrong)
@@ -211,7 +211,7 @@ class Changes(unittest.TestCase):
 
     def test_sky(self):
         scene = load()
-        point = [[2, 100, -2, 0, 1, 0]]  # over the roof
+        point = [[2, 100, -2, 0, 1, 0]]  # above the roof
         for e in scene.lights:
             e.dimmer = 0
         scene.add_sky('overcast', lux=10000)
@@ -234,7 +234,7 @@ class Measuring(unittest.TestCase):
         self.assertTrue((abs(a.illuminance - b.illuminance) < allowed).all())
         luminance = a.irradiance @ np.array([.2126, .7152, .0722])
         np.testing.assert_allclose(luminance, a.illuminance, rtol=1e-4)
-        up = scene.measure(points[:, :3]).illuminance  # a glTF's up is y, unless it says else
+        up = scene.measure(points[:, :3]).illuminance  # y is up in glTF
         points[:, 3:] = 0, 1, 0
         np.testing.assert_array_equal(up, scene.measure(points).illuminance)
         self.assertEqual(len(scene.measure(np.zeros((0, 6)))), 0)
@@ -274,8 +274,8 @@ class Working(unittest.TestCase):
         begun = time.monotonic()
         with self.assertRaises(KeyboardInterrupt):
             scene.render(method='path', spp=1 << 16)
-        self.assertLess(time.monotonic() - begun, 10)  # alone it would take hours
-        scene.render(**FAST)  # and all is well
+        self.assertLess(time.monotonic() - begun, 10)  # without the interrupt it would take hours
+        scene.render(**FAST)  # the scene still works
 
 
 if __name__ == '__main__':

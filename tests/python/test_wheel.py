@@ -1,4 +1,4 @@
-"""The wheel that tools/build_backend.py makes of a built module, installed and imported."""
+"""The wheel that tools/build_backend.py packs can be installed and imported."""
 import base64
 import csv
 import hashlib
