@@ -56,7 +56,7 @@ struct SphereData {
   std::optional<Emission> emission{};  ///< none: it does not shine
 };
 
-/// A camera by where it stands and what it looks at.
+/// A camera, given by its position and the point that it looks at.
 struct LookAt {
   Point eye{};                ///< metres
   Point target{};             ///< metres
@@ -81,19 +81,19 @@ class Camera {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// A scene. It is for one thread at a time. Changes count from the next picture or measurement on,
-/// which then builds again what it needs. If a function throws, the scene is as it was.
+/// A scene. Only one thread may use it at a time. Changes take effect at the next picture or
+/// measurement, which rebuilds what it needs. A function that throws leaves the scene unchanged.
 class Scene {
  public:
   /// An empty scene, to be built.
   explicit Scene(const SceneOptions& options = {});
-  /// A copy, to be changed by itself.
+  /// Makes an independent copy.
   Scene(const Scene& other);
-  /// Takes another scene, which may only be assigned to or destroyed afterwards.
+  /// Moves `other`, which may only be assigned to or destroyed afterwards.
   Scene(Scene&& other) noexcept;
-  /// Becomes a copy.
+  /// Becomes an independent copy.
   Scene& operator=(const Scene& other);
-  /// Takes another scene, which may only be assigned to or destroyed afterwards.
+  /// Moves `other`, which may only be assigned to or destroyed afterwards.
   Scene& operator=(Scene&& other) noexcept;
   ~Scene();
 
@@ -113,9 +113,9 @@ class Scene {
   bool is_photometric() const;
   /// Number of triangles.
   std::size_t triangle_count() const;
-  /// The lower and the upper corner of all surfaces, metres.
+  /// Bounding box of all surfaces: its lower and upper corner, metres.
   std::pair<Point, Point> bounds() const;
-  /// The upward direction: that of the options, or what the file says.
+  /// The upward direction, from SceneOptions or from the file.
   Point up() const;
   /// Names of the cameras.
   std::vector<std::string> camera_names() const;
@@ -151,7 +151,7 @@ class Scene {
   void add_light(const Luminaire& luminaire);
   /// Adds a sky. @throws UsageError for a sky that does not exist or lacks its sun
   void add_light(const Sky& sky);
-  /// Adds light as the program's options do. Lights keep their dimmers by name.
+  /// Adds light as the command line's options do. Dimmers that were set stay with their names.
   /// @throws UsageError for values without meaning
   /// @throws InputError where a file cannot be used
   void add_light(const AddedLight& light);
@@ -171,9 +171,9 @@ class Scene {
   LightInfo light(const std::string& name) const;
   /// Sets the factor on what the lights of one name send, at least 0.
   void set_dimmer(const std::string& name, double dimmer);
-  /// Sets the radiance of the lights of one name, undimmed: W/(m² sr) or cd/m²; of points and
-  /// spots the intensity; of distant lights the irradiance; of images, skies and measured
-  /// luminaires a factor. At least 0.
+  /// Sets the undimmed radiance of the lights of one name, in W/(m² sr) or cd/m², at least 0. For
+  /// point and spot lights it is the intensity, and for distant lights the irradiance. For images,
+  /// skies and measured luminaires it is a factor.
   void set_radiance(const std::string& name, const Color& radiance);
   /// Sets the dimmer of all lights whose name fits a pattern, in which '*' stands for any letters.
   /// @throws UsageError where no name fits
@@ -193,10 +193,11 @@ class Scene {
   /// @name Cameras
   /// @{
 
-  /// The camera of that name; for "", the first one, or one that frames the scene.
+  /// The camera of that name. "" gives the first camera, or one that frames the scene if there is
+  /// none.
   /// @throws UsageError where no camera has the name
   Camera camera(const std::string& name = "");
-  /// A camera at a place that looks at another one.
+  /// Returns a camera at `view.eye` that looks at `view.target`.
   /// @throws UsageError for values outside their ranges, or an eye at the target
   Camera look_at(const LookAt& view) const;
   /// @}
