@@ -149,9 +149,9 @@ class Scene {
   /// Adds a measured luminaire.
   /// @throws InputError where the file cannot be used
   void add_light(const Luminaire& luminaire);
-  /// Adds a sky. @throws UsageError for a sky that does not exist or lacks its sun
+  /// Adds a sky. @throws UsageError for an unknown kind, or one that needs a sun and has none
   void add_light(const Sky& sky);
-  /// Adds light as the command line's options do. Dimmers that were set stay with their names.
+  /// Adds light as the command line's options do. Dimmers continue to apply, by name.
   /// @throws UsageError for values without meaning
   /// @throws InputError where a file cannot be used
   void add_light(const AddedLight& light);

@@ -82,8 +82,9 @@ class CertifiedSources {
   LightGroups groups_;
   NominalSourceDensity competition_;
   std::vector<bool> has_light_, is_drawn_;
-  // Linked lists of the sources on each side of a primitive: per primitive, its last source; in
-  // before_, per source, the preceding one on the same primitive. -1 ends a list.
+  // Linked lists of the sources on each side of a primitive. source_of_front_ and source_of_back_
+  // hold the last source of each primitive, before_ the preceding source of each source. -1 ends a
+  // list.
   std::vector<int32_t> source_of_front_, source_of_back_, before_;
   CertifiedEnvironment environment_;
   float reach_ = 1;

@@ -73,9 +73,9 @@ struct FittedRecord {
   float reach = 0;  // metres around the record within which its fits hold, irradiance and gloss
   Rgb gloss;        // mean radiance of wide gloss, as in GatherRecord
   float gloss_error = 0;
-  float rays = 0;  // gather rays for viewing rays that cannot use the fit
-  // True if the fit must not be used, nor that of another record where this one is the nearest.
-  // Either another surface stands close in front of it, or its few neighbours lie on one side.
+  float rays = 0;  // gather rays of a viewing ray that cannot use the fit
+  // True if lookups fail where this record is the nearest: another surface stands close in front of
+  // it, or its few neighbours lie on one side.
   bool is_alone = false;
 };
 
@@ -102,7 +102,7 @@ class GatherRecords {
   };
   // Returns the distribution of gather rays at a place that pixel (x, y) sees. All places near a
   // record of the pixel, on the same surface, use the distribution at that record, which `last`
-  // caches. Use one cache per caller, for these records only.
+  // caches. A cache serves one caller and one GatherRecords.
   const GatherDistribution& aim_at(int x, int y, const CellHit& hit, const LitRegions& places,
                                    CachedDistribution& last) const;
   size_t bytes() const {

@@ -39,8 +39,8 @@ struct MethodPlan {
 
   // certified: settings of direct light at first and further viewing rays, and at cells.
   CertifiedSettings first{}, further{}, at_cells{};
-  // Limit of the number of cells. If they exceed it, make_integrator() returns null, or paths
-  // replace cells if there is a forecast.
+  // Limit of the number of cells. Beyond it, paths replace cells if there is a forecast. Otherwise
+  // make_integrator() returns null.
   double most_cells = std::numeric_limits<double>::infinity();
 
   // True if the picture is path traced because the forecast says that this costs less.
@@ -54,8 +54,8 @@ std::string as_text(const MethodPlan& plan);
 // counters of `in.cells`.
 MethodPlan plan_certified(const MethodInput& in);
 
-// Allowed error of a path-traced picture. Pictures by cells have about half the asked error, so a
-// fair comparison needs paths that also fall below it.
+// Allowed error of a path-traced picture. Pictures by cells have about half the asked error, so
+// path tracing gets a stricter target, too.
 constexpr double error_by_paths(double asked) {
   return 0.75 * asked;
 }

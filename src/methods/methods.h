@@ -166,7 +166,7 @@ bool needs_radiosity(Method method, Indirect indirect);
 // True if the method makes cells: it then needs CellInput.
 bool needs_cells(Method method, Indirect indirect);
 
-// Decides how the method computes the light. Traces no rays but test paths.
+// Decides how the method computes the light. Traces no rays except test paths.
 MethodPlan plan_method(Method method, const MethodInput& input);
 // Prepares what the plan asks for, such as cells and gathers, and makes the integrator. Returns
 // null if CellInput::stop was set meanwhile, or if more than CellInput::most_cells cells would be

@@ -55,7 +55,7 @@ struct RenderOptions {
   Kj92Settings kj92;     // kj92: radiosity, source selection and shadow rays
   // Result of prepare(); null: render() prepares what is needed.
   const Preparation* preparation = nullptr;
-  CellStore* cells = nullptr;  // certified: cells from before, updated for later use; may be null
+  CellStore* cells = nullptr;  // certified: cells kept between pictures; may be null
   Preview* preview = nullptr;  // receives finished tiles; may be null
   // Called with the plan before anything is prepared; may be empty.
   std::function<void(const MethodPlan&)> planned;
@@ -66,9 +66,9 @@ struct RenderOptions {
   double error_limit = 0;
   Checkpoint* checkpoint = nullptr;  // written, and continued if it was read; may be null
   int part = 1, parts = 1;           // share of the picture to render, counted from 1
-  // Processes that render the same picture together. All have the same options, but preview,
-  // deadline and checkpoint only at rank 0. Only rank 0's result is complete. Without a deadline,
-  // pass the group's stop_flag() to render(). May be null.
+  // Processes that render the same picture together. All have the same options, except
+  // that only rank 0 may have a preview, a deadline or a checkpoint. Only rank 0's result is
+  // complete. Without a deadline, pass the group's stop_flag() to render(). May be null.
   ProcessGroup* group = nullptr;
   // automatic: the method's way; for certified, cells or paths, whichever is cheaper.
   Indirect indirect = Indirect::cells;
@@ -115,7 +115,7 @@ struct RenderStatistics {
   size_t gaps_filled = 0;       // pixels that a time limit left to GapFiller
   bool gaps_are_paths = false;  // they are path traced: there were no cells yet
   size_t unsampled = 0;         // pixels without a sample, after a stop
-  // unsampled pixels show RenderOptions::preview; else they are black
+  // true if unsampled pixels show RenderOptions::preview, false if they are black
   bool shows_preview = false;
   double preprocess_seconds = 0;  // preparation, whether render() or its caller made it
   double render_seconds = 0;      // everything after it

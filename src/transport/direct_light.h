@@ -46,8 +46,8 @@ class DirectLight {
                      Counters& counters) const = 0;
   virtual void flush(DirectLightScratch& scratch, RadianceBatch& out, Counters& counters) const = 0;
 
-  // Sets the MIS weights of emission that walks have hit, seen.weights, which are 1 on entry. Each
-  // of these walks left its last vertex by a non-delta lobe, and sources were sampled there too.
+  // Sets seen.weights (1 on entry), the MIS weights of emission that walks have hit. Each of these
+  // walks left its last vertex by a non-delta lobe, and sources were sampled there too.
   virtual void weigh(SeenEmission& seen) const = 0;
 };
 
