@@ -90,11 +90,11 @@ class Scene {
   explicit Scene(const SceneOptions& options = {});
   /// Makes an independent copy.
   Scene(const Scene& other);
-  /// Takes another scene, which may only be assigned to or destroyed afterwards.
+  /// Moves `other`, which may only be assigned to or destroyed afterwards.
   Scene(Scene&& other) noexcept;
   /// Replaces the scene by an independent copy.
   Scene& operator=(const Scene& other);
-  /// Takes another scene, which may only be assigned to or destroyed afterwards.
+  /// Moves `other`, which may only be assigned to or destroyed afterwards.
   Scene& operator=(Scene&& other) noexcept;
   ~Scene();
 

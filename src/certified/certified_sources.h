@@ -22,12 +22,12 @@ namespace troffer {
 // Environment lights of a scene as sources.
 struct CertifiedEnvironment {
   const SkyPatches* cells = nullptr;  // of the prepared scene
-  uint32_t first_source = 0;          // index of the first sky patch; sky patches end sources_
+  uint32_t first_source = 0;          // index of the first sky patch; they come last in all()
   const Occluders* occluders = nullptr;
   LargeFacets scene;          // the scene's largest facets
   EnvironmentSampler points;  // sampler of environment lights, used without proofs
   ClosedShells shells;        // closed opaque surfaces, which keep environment light out
-  // rays found no environment light where other lights shine (not proved)
+  // True if test rays found no environment light on surfaces that other lights reach. Not a proof.
   bool seems_shut_out = false;
   // Per primitive: frame around its portal, which blocks light that passes beside the portal.
   std::vector<std::vector<FacetToAdd>> frames;
@@ -36,21 +36,22 @@ struct CertifiedEnvironment {
   float reach = 0;         // metres from `centre` within which patch directions are exact
 };
 
-// Immutable after set_occluders(). Its members are one table per kind of lookup.
+// Immutable after set_occluders(). Most members are lookup tables, one for each kind of query.
 class CertifiedSources {
  public:
-  // are_drawn: few lights may be sampled, too. gloss_points: points per source at which glossy
-  // BRDFs and textured radiance are evaluated. `scene` must outlive this object.
+  // are_drawn: lights may be sampled even where they are few. gloss_points: points per source at
+  // which glossy BRDFs and textured radiance are evaluated. `scene` must outlive this object.
   CertifiedSources(const PreparedScene& scene, bool are_drawn, uint32_t gloss_points);
   CertifiedSources(const CertifiedSources&) = delete;
   CertifiedSources& operator=(const CertifiedSources&) = delete;
 
-  // True if these sources stand for all light of `light`, certified or sampled.
+  // True if these sources and groups cover all of `light`, certified or sampled.
   bool has(uint32_t light) const { return has_light_[light] || is_drawn_[light]; }
   // True if the light is always sampled: a mesh of too many pieces that lie in no common plane, or
   // a light without a certificate shape (light.h).
   bool is_drawn(uint32_t light) const { return is_drawn_[light]; }
   bool is_empty() const { return groups_.size() == 0 && environment_.cells->all().empty(); }
+  // Nominal density of source sampling, for MIS weights of rays that lobes spawn.
   const NominalSourceDensity& competition() const { return competition_; }
   // Returns the source that covers `point` on a light primitive, seen from its front or its back;
   // null if none does.
@@ -81,8 +82,9 @@ class CertifiedSources {
   LightGroups groups_;
   NominalSourceDensity competition_;
   std::vector<bool> has_light_, is_drawn_;
-  // Per primitive: the last source that covers part of it, or -1. before_: per source, the
-  // preceding source on the same primitive, or -1.
+  // Linked lists of the sources on each side of a primitive. source_of_front_ and source_of_back_
+  // hold the last source of each primitive, before_ the preceding source of each source. -1 ends a
+  // list.
   std::vector<int32_t> source_of_front_, source_of_back_, before_;
   CertifiedEnvironment environment_;
   float reach_ = 1;

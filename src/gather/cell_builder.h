@@ -18,7 +18,7 @@
 
 namespace troffer {
 
-// Places where light will be asked for: pilot viewing rays all over a picture, or measuring points.
+// Places where light will be needed: pilot viewing rays spread over a picture, or measuring points.
 struct CellPilot {
   ViewingRays viewing;
   std::vector<CellHit> places;
@@ -32,8 +32,9 @@ struct CellBuilderOptions {
   // Limit of the number of cells; with more, make_cells() returns null.
   double most_cells = std::numeric_limits<double>::infinity();
   ProcessGroup* group = nullptr;  // processes that make the same cells together; may be null
-  GatheringPoints points{};       // gather rays of measuring points; most_rays 0: no points
-  // Once set, no further rows are made. The light that only they would bring is missing;
+  // Gather rays of measuring points; most_rays is 0 if the pilot has no measuring points.
+  GatheringPoints points{};
+  // Once set, no further rows are made. The light of the missing rows is lost, and
   // CellStatistics::unresolved estimates its share. Null: never set.
   const StopFlag* enough = nullptr;
 };

@@ -162,6 +162,7 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
 
 // Adds what first hits reflect according to the pixel's records and to cells.
 void CellsIndirect::know(const WaveHits& wave, RadianceBatch& out) const {
+  if (!records_) return;
   CheckItems items;
   for (size_t i = 0; i < wave.size(); ++i) {
     const SurfaceScattering& scattering = wave.scatterings[i];

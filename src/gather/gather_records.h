@@ -36,7 +36,7 @@ struct PictureView {
 };
 
 struct GatherOptions {
-  double error = 0.01;  // asked for a pixel's gathered light
+  double error = 0.01;  // asked relative error of a pixel's gathered light
   double typical = 0;   // luminance of indirect light in the picture
   int threads = 0;
   uint64_t seed = 0;
@@ -46,10 +46,10 @@ struct GatherOptions {
 // Sums over the rays of a gather.
 struct GatherSums {
   Rgb sum;
-  float squares = 0;          // of luminance
-  float bright_nearness = 0;  // luminance / distance
-  float half = 0;             // half difference by the noise of cells (CellLight)
-  float weight = 0;           // luminance that one unit of this brings to the pixel
+  float squares = 0;          // of squared luminance
+  float bright_nearness = 0;  // of luminance / distance
+  float half = 0;             // of draws of the noise of cells, luminance (CellLight)
+  float weight = 0;           // not a sum: luminance of the pixel per unit of this light
 };
 
 // The gather at one surface that a pixel sees.
@@ -59,8 +59,8 @@ struct GatherRecord {
   float rays = 0;
   float nearness = 0;  // sum of 1 / distance over the rays, 1/m
   GatherSums matte;    // irradiance
-  // Wide gloss. Its light is a mean radiance: what gloss sends to the eye, over what it would send
-  // under a radiance of 1 all around.
+  // Wide gloss. Its light is the mean radiance over the lobe: the radiance that the lobe reflects
+  // to the eye, divided by what it reflects under a uniform radiance of 1.
   GlossPlace place;
   GatherSums gloss;
   float width = 1;  // of the gloss (GGX)
@@ -70,12 +70,12 @@ struct GatherRecord {
 struct FittedRecord {
   Rgb irradiance;
   float error = 0;  // standard error of its luminance
-  float reach = 0;  // metres around the record within which both fits hold
-  Rgb gloss;        // mean radiance that wide gloss shows, and its error
+  float reach = 0;  // metres around the record within which its fits hold, irradiance and gloss
+  Rgb gloss;        // mean radiance of wide gloss, as in GatherRecord
   float gloss_error = 0;
-  float rays = 0;  // needed by a pixel that gathers for itself
-  // True if no fit holds where this record is the nearest: something stands close before the
-  // surface, or the few neighbours lie to one side.
+  float rays = 0;  // gather rays of a viewing ray that cannot use the fit
+  // True if lookups fail where this record is the nearest: another surface stands close in front of
+  // it, or its few neighbours lie on one side.
   bool is_alone = false;
 };
 
@@ -90,19 +90,19 @@ class GatherRecords {
                                              const StopFlag& stop, Counters& counters);
 
   // Looks up the fit at a place that pixel (x, y) sees: irradiance, and what wide gloss of this
-  // material shows (GlossPlace; no_material: none). False if the pixels around see another surface,
-  // or if their fits do not hold there. is_rough: accepts fits beyond their reach.
+  // material shows (GlossPlace; no_material: none). Returns false if the surrounding pixels see
+  // another surface, or if their fits do not hold there. is_rough: accepts fits that do not hold.
   bool irradiance_at(int x, int y, const CellHit& hit, uint32_t gloss, bool is_rough,
                      FittedRecord& out) const;
-  // An aim and its record; no_record: for a place without one.
+  // A distribution of gather rays and the record at which it was made; no_record if there is none.
   static constexpr uint32_t no_record = 0xffffffffu;
   struct CachedDistribution {
     GatherDistribution aim;
     uint32_t record = no_record;
   };
-  // Returns the distribution of gather rays at a place that pixel (x, y) sees. It is that of the
-  // pixel's last record on the same surface, if there is one, so that one aim serves many rays.
-  // `last`: the caller's cache, for these records only.
+  // Returns the distribution of gather rays at a place that pixel (x, y) sees. All places near a
+  // record of the pixel, on the same surface, use the distribution at that record, which `last`
+  // caches. A cache serves one caller and one GatherRecords.
   const GatherDistribution& aim_at(int x, int y, const CellHit& hit, const LitRegions& places,
                                    CachedDistribution& last) const;
   size_t bytes() const {
@@ -123,7 +123,7 @@ class GatherRecords {
  private:
   friend class GatherPass;
   GatherRecords(const PixelWindow& window) : window_(window) {}
-  // Removes the records with a flag and renumbers the others.
+  // Removes the records whose flag is set and renumbers the others.
   void leave_out(const std::vector<uint8_t>& flags);
 
   PixelWindow window_;

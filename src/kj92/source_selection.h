@@ -1,9 +1,9 @@
-// Source selection: for every patch, the sources that deserve shadow rays, and the general
-// radiosity that all other sources leave. BintreeDirect and RadiosityIndirect use it.
+// Source selection: decides for every patch which sources deserve shadow rays. The light of all
+// other sources is its general radiosity. BintreeDirect and RadiosityIndirect use it.
 // At each sample point, the general radiosity and the contributions of treated sources add up to
-// the irradiance of the solution: nothing is lost or counted twice. A treated source that a point
-// does not store separately is computed again (source_contributions) and subtracted from the
-// point's general radiosity.
+// the irradiance of the solution: nothing is lost or counted twice. The solution stores only the
+// strongest contributions of a point. Those of other treated sources are computed again
+// (source_contributions) and subtracted from the general radiosity.
 // References: as in source_class.h.
 #pragma once
 
@@ -28,14 +28,14 @@ struct SelectionOptions {
   SelectionThresholds thresholds;
   // Allows the selection of bright patches.
   bool uses_patches = true;
-  // If true, only the lights in `only` may be treated, and no patches; all others stay in the
-  // general radiosity.
+  // If true, only the lights in `only` and lights without a surface are treated. Other lights and
+  // all patches stay in the general radiosity.
   bool is_restricted = false;
   std::vector<uint32_t> only;
 };
 
-// A source that is probed or sampled on a patch. Numbers as in StoredContribution: lights of the
-// scene, then patches.
+// A source that is probed or sampled on a patch. `source` is numbered as in StoredContribution:
+// lights of the scene first, then patches.
 struct TreatedSource {
   uint32_t source = no_source;
   SourceClass source_class;

@@ -21,8 +21,8 @@ enum class PlannedLight : uint8_t {
   path_tracing,   // by PathIntegrator
   cells,          // certified direct light, reflected light gathered from cells
   sensor_paths,   // certified direct light, reflected light by paths (measuring points)
-  direct,         // direct light alone, one kind of viewing ray
-  staged_direct,  // direct light alone; further viewing rays of a pixel get fewer samples
+  direct,         // direct light alone, with the same settings for all viewing rays
+  staged_direct,  // direct light alone, with coarser settings for further viewing rays
   radiosity,      // reflected light from the radiosity solution (kj92)
 };
 
@@ -39,7 +39,8 @@ struct MethodPlan {
 
   // certified: settings of direct light at first and further viewing rays, and at cells.
   CertifiedSettings first{}, further{}, at_cells{};
-  // Limit of the number of cells. With more, paths take their place if there is a forecast.
+  // Limit of the number of cells. Beyond it, paths replace cells if there is a forecast. Otherwise
+  // make_integrator() returns null.
   double most_cells = std::numeric_limits<double>::infinity();
 
   // True if the picture is path traced because the forecast says that this costs less.
@@ -53,16 +54,18 @@ std::string as_text(const MethodPlan& plan);
 // counters of `in.cells`.
 MethodPlan plan_certified(const MethodInput& in);
 
-// Allowed error of a picture by paths. Pictures by cells reach about half of the asked error, so
-// paths also have to do better than asked.
+// Allowed error of a path-traced picture. Pictures by cells have about half the asked error, so
+// path tracing gets a stricter target, too.
 constexpr double error_by_paths(double asked) {
   return 0.75 * asked;
 }
-// Limit of viewing rays per pixel of a picture by paths. asked: that of the user; 0: none.
+// Returns the limit of viewing rays per pixel of a path-traced picture. asked: the user's limit; 0
+// if there is none.
 int most_by_paths(int asked);
 
-// Allowed error of direct light beyond the first surface: at cells and at what gloss shows. At
-// least 0.1, because many cells average out and gloss carries only a part of the light.
+// Returns the allowed error of direct light beyond the first surface: at cells, and at surfaces
+// that are seen in gloss. It is at least 0.1, because errors of many cells average out and gloss
+// carries only a part of the light.
 double error_beyond_first(const MethodInput& in);
 // Settings of direct light for that error.
 CertifiedSettings settings_beyond_first(const MethodInput& in);

@@ -97,14 +97,14 @@ struct CellInput {
   GatheringPoints points{};
   // Once set, preparation ends as soon as it can (CellBuilderOptions::enough). Null: never.
   const StopFlag* enough = nullptr;
-  // Result, if `enough` is given: the same light by fewer rays and with more noise, for pixels that
-  // a time limit leaves without samples. It exists as soon as there are cells, even if `stop` then
-  // prevents the integrator.
+  // Result, set if `enough` is not null: a cheaper, noisier integrator of the same light. GapFiller
+  // uses it for pixels that a time limit leaves without samples. It is set as soon as there are
+  // cells, even if `stop` later makes make_integrator() return null.
   std::unique_ptr<Integrator> quick{};
 };
 
-// Input of make_integrator(). radiosity and cells are null where there are none. The method copies
-// radiosity.
+// Input of plan_method() and make_integrator(). radiosity and cells may be null if the method does
+// not need them. The integrator keeps a copy of *radiosity.
 struct MethodInput {
   const PreparedScene& scene;
   const MethodSettings& settings;
@@ -127,21 +127,26 @@ struct MethodRow {
   // True if the method needs the radiosity preprocessing even without indirect light.
   bool always_needs_radiosity = false;
 
-  int widest_tile = 16;  // pixels; narrower where a tile would take more rays than
+  int widest_tile = 16;  // side of a tile, pixels
+  // Tiles are smaller where they would take more shadow rays than this.
   double most_rays_per_tile = 1e300;
   // True if the noise of a pixel, though not its mean, depends on what else is in its batch. A crop
   // then has the same noise only if it is cut into the same batches.
   bool has_noise_of_batch = false;
-  // True if the errors of dark pixels are judged against the usual luminance of the picture.
+  // True if the allowed error of dark pixels is relative to the picture's typical luminance.
   bool uses_typical_luminance = false;
   // True if the pixels of a crop must have the values that they have in the whole picture.
   bool is_same_in_crops = true;
-  int refinement = 1;  // default limit of viewing rays per pixel, in --spp; 1: none are added
+  // 1: pixels get spp viewing rays and no more. Above 1: pixels are refined up to
+  // most_viewing_rays(). In pictures of direct light alone, pixels with surrogate samples then get
+  // at least this many times spp rays.
+  int refinement = 1;
   int usual_measuring_samples = 4096;  // per measuring point
-  // True if the number of samples of a point follows from a quarter of MethodSettings::error
-  // instead.
+  // True if points are instead sampled until their relative error is a quarter of
+  // MethodSettings::error.
   bool measures_to_error = false;
-  int rays_of_measuring_sample = 1;  // samples that one estimate counts as
+  // Shadow rays per source of one estimate at a measuring point; each counts as one sample.
+  int rays_of_measuring_sample = 1;
   // Direct light takes part in every n-th estimate when measuring to an error, because it varies
   // much less than indirect light. A power of two.
   int measuring_samples_per_direct = 1;
@@ -161,7 +166,7 @@ bool needs_radiosity(Method method, Indirect indirect);
 // True if the method makes cells: it then needs CellInput.
 bool needs_cells(Method method, Indirect indirect);
 
-// Decides how the method computes the light, by test paths at most.
+// Decides how the method computes the light. Traces no rays except test paths.
 MethodPlan plan_method(Method method, const MethodInput& input);
 // Prepares what the plan asks for, such as cells and gathers, and makes the integrator. Returns
 // null if CellInput::stop was set meanwhile, or if more than CellInput::most_cells cells would be

@@ -26,9 +26,11 @@ class Deadline;
 class Preview;
 
 // AOVs (arbitrary output variables) besides the picture.
-// sources (kj92): numbers of sources sampled by shadow rays; probed and visible; probed and hidden.
-// sources (certified): neither proved lit nor dark; proved lit; proved dark.
-// viewing_error: standard error by the spread of the pixel's viewing rays; `error` may cover less.
+// `sources` has three channels, each a number of sources at the first surface:
+//   kj92: sampled by shadow rays, probed and visible, probed and hidden.
+//   certified: neither proved lit nor dark, proved lit, proved dark.
+// `viewing_error` is the standard error from the spread of a pixel's viewing rays. `error` is the
+// method's own estimate where it has one.
 enum class Aov {
   albedo,
   normal,
@@ -45,30 +47,30 @@ enum class Aov {
 struct RenderOptions {
   Method method = Method::certified;
   int spp = 4;  // viewing rays per pixel
-  // Most viewing rays of a pixel, where refinement finds that neighbouring pixels differ. A number
-  // up to spp turns refinement off; 0: as most_viewing_rays() says.
+  // Limit of viewing rays in a pixel. Refinement adds rays where neighbouring pixels differ. Values
+  // from 1 to spp turn refinement off; 0 selects the method's limits (most_viewing_rays()).
   int max_spp = 0;
   int shadow_rays = 64;  // fixed: rays per source per viewing ray
   double error = 0.01;   // certified: see certified_settings
-  Kj92Settings kj92;     // certified: the radiosity of its indirect light
+  Kj92Settings kj92;     // kj92: radiosity, source selection and shadow rays
   // Result of prepare(); null: render() prepares what is needed.
   const Preparation* preparation = nullptr;
-  CellStore* cells = nullptr;  // certified: cells from before, updated for later use; may be null
+  CellStore* cells = nullptr;  // certified: cells kept between pictures; may be null
   Preview* preview = nullptr;  // receives finished tiles; may be null
   // Called with the plan before anything is prepared; may be empty.
   std::function<void(const MethodPlan&)> planned;
-  // Ends the work when its time is over; paths then fill the missing pixels. The stop flag of
-  // render() must be the deadline's own. May be null.
+  // Ends the work when its time is up; GapFiller then fills pixels without samples. Pass its
+  // flag() to render() as `stop`. May be null.
   Deadline* deadline = nullptr;
   // Estimated error (RenderStatistics) at which the work is done; 0: no limit.
   double error_limit = 0;
   Checkpoint* checkpoint = nullptr;  // written, and continued if it was read; may be null
   int part = 1, parts = 1;           // share of the picture to render, counted from 1
-  // Processes that render the same picture together, with the same options except preview, deadline
-  // and checkpoint. Those are rank 0's, as is the result; the results of other ranks are
-  // incomplete. The stop flag must be the process group's. May be null.
+  // Processes that render the same picture together. All have the same options, except
+  // that only rank 0 may have a preview, a deadline or a checkpoint. Only rank 0's result is
+  // complete. Without a deadline, pass the group's stop_flag() to render(). May be null.
   ProcessGroup* group = nullptr;
-  // automatic: cells, or paths where these are cheaper.
+  // automatic: the method's way; for certified, cells or paths, whichever is cheaper.
   Indirect indirect = Indirect::cells;
   int depth = -1;             // path: most bounces; -1 = unlimited
   int width = 0, height = 0;  // 0 = by the camera
@@ -81,8 +83,8 @@ struct RenderOptions {
 
 // Limits on the viewing rays of pixels. in_pixel: of one pixel. in_mean: on average over a tile, so
 // that scattered highlights are refined but large glittering areas do not take longer. usual: the
-// number for which textures are filtered. All equal max_spp if it is given; otherwise they follow
-// from the method (MethodRow::refinement).
+// number of rays on which the footprint of texture lookups is based. All equal max_spp if it is
+// given; otherwise they follow from the method and spp.
 struct MostViewingRays {
   int in_pixel = 0, in_mean = 0, usual = 0;
 };
@@ -95,7 +97,7 @@ MethodSettings method_settings(const RenderOptions& options);
 // each other or the scene, InputError for a camera whose numbers overflow.
 void check_options(const PreparedScene& scene, const Camera& camera, const RenderOptions& options);
 
-// Errors of pixels by the spread of their viewing rays, as if these were independent samples.
+// Errors of pixels, estimated from the spread of their viewing rays as if these were independent.
 struct ViewingErrors {
   double relative_rms = 0;  // standard error of a pixel over the picture's mean luminance
   // Share of pixels whose standard error exceeds 1 % of their luminance or of the mean, whichever
@@ -113,10 +115,10 @@ struct RenderStatistics {
   size_t gaps_filled = 0;       // pixels that a time limit left to GapFiller
   bool gaps_are_paths = false;  // they are path traced: there were no cells yet
   size_t unsampled = 0;         // pixels without a sample, after a stop
-  // unsampled pixels show RenderOptions::preview; else they are black
+  // true if unsampled pixels show RenderOptions::preview, false if they are black
   bool shows_preview = false;
-  double preprocess_seconds = 0;  // of the preparation, wherever it was made
-  double render_seconds = 0;      // of everything after it
+  double preprocess_seconds = 0;  // preparation, whether render() or its caller made it
+  double render_seconds = 0;      // everything after it
   CellStatistics cells;           // empty if the method makes no cells
   bool is_by_paths = false;       // certified: paths replaced cells
   MethodPlan plan;                // decisions made before the preparation

@@ -1,6 +1,6 @@
 // One picture in progress: passes over its tiles, then further rays where pixels need them. Used by
-// render(). TileTracer traces, FurtherRays decides, RenderingArchive turns the state into bytes;
-// this class orders the steps of the tiles, for threads and process groups.
+// render(). TileTracer traces rays, FurtherRays decides where more are needed, and RenderingArchive
+// serializes the state. This class schedules the tiles' steps on threads and process groups.
 #pragma once
 
 #include <atomic>
@@ -21,7 +21,7 @@
 
 namespace troffer {
 
-// Thirteen members: the inputs, the parts named above, and the progress.
+// It has thirteen members because it owns the parts named above besides inputs and progress.
 class Rendering {
  public:
   // Arguments other than camera and plan must outlive this object. Continues from
@@ -30,7 +30,8 @@ class Rendering {
             const RenderOptions& options, TilePlan plan, const ProgressCallback& progress,
             const StopFlag& stop);
 
-  // Sets the time that a pixel without rays will take to fill, for the deadline.
+  // Sets the time that GapFiller needs for one pixel without samples. The deadline keeps back this
+  // time for each such pixel of the window.
   void set_seconds_per_gap(double seconds_per_pixel);
 
   // Returns complete, good_enough, or stopped (by a request or a deadline).
@@ -38,7 +39,7 @@ class Rendering {
 
   Film& film() { return film_; }
 
-  // Results for the window.
+  // Results for the window, the part of the picture that was asked for (TilePlan).
   std::vector<Layer> layers() const;
   Counters counters() const;
   ViewingErrors viewing_errors() const;
@@ -52,7 +53,8 @@ class Rendering {
     std::atomic<bool> was_stopped = false;
     size_t gaps = 0;  // pixels of the window without samples
     double seconds_per_gap = 0;
-    // All tiles finish a step before the next, so that a limit may end the work.
+    // If true, all tiles finish a step before any begins the next. A limit can then end the work
+    // with tiles of equal quality.
     bool is_stepwise = true;
   };
   using Tiles = std::vector<size_t>;

@@ -34,10 +34,10 @@ struct CertifiedMemory {
   std::vector<float> unoccluded;      // per receiver, of the current source, sr
   std::vector<float> all_unoccluded;  // of all requests, one after the other, sr
   std::vector<uint32_t> order;        // requests, strongest first
-  std::vector<float> light;           // per receiver: brightness × light seen so far, sr
+  std::vector<float> light;           // per receiver: brightness × visible light so far, sr
   std::vector<float> done;  // per receiver: brightness × unoccluded light of requests so far
   std::vector<float> seen, rest, floor;  // per receiver: Promise of the current source
-  std::vector<uint32_t> wanted_points;   // per receiver: points that its integrand wants
+  std::vector<uint32_t> wanted_points;   // per receiver: number of points for its integrand
   std::vector<uint32_t> members;         // receivers that the source reaches
   std::vector<CellSum> sums;             // per receiver
   GatherMemory gather;
@@ -50,7 +50,8 @@ struct CertifiedMemory {
   std::vector<SourceVisibility> answers;  // of the current source
   std::vector<SourceVisibility> waiting;  // answers of requests that wait for rays
   double far_open = 0.5;                  // estimated share of the light from infinity that arrives
-  std::vector<UnsettledPart> left;  // parts at infinity that the last call's answers leave out
+  // parts of sources at infinity that the last call did not answer; the caller samples them
+  std::vector<UnsettledPart> left;
   CertifiedCounters counters;
 };
 
@@ -60,7 +61,8 @@ using TakeAnswers =
 
 // Answers each request once: first those that need no ray, strongest first, then those that wait
 // for rays, which are cast together. integrand: null if all receivers want visibility only. The
-// result depends only on the cluster, the requests and their FoundFacets, to which the rays add.
+// result depends only on the cluster, the requests and their FoundFacets. The rays add the facets
+// that they hit to FoundFacets.
 void certified_light(const ShadowCluster& cluster, std::span<const LightRequest> requests,
                      ShadowIntegrand* integrand, ShadowScene& scene,
                      const CertifiedOptions& options, CertifiedMemory& memory,

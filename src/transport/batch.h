@@ -26,7 +26,7 @@ struct ViewingRays {
   std::vector<uint64_t> streams;  // random stream of the ray's pixel
   std::vector<uint32_t> samples;  // sample number within that pixel
   std::vector<PixelAt> pixels;    // pixel in the picture; empty if there is no picture
-  std::vector<Vec2> places;       // position within that pixel, [0,1)²; empty likewise
+  std::vector<Vec2> places;       // position within that pixel, [0,1)²; empty if `pixels` is
   // Empty, or per ray the shadow records of neighbouring rays. Only methods that compare patterns
   // use them.
   std::vector<NeighbourRecords> neighbours;
@@ -75,18 +75,20 @@ struct RadianceBatch {
   // together with `direct`. Empty unless SensorBatch::samples_per_direct is above 1.
   std::vector<Rgb> images;
   std::vector<uint32_t> shadow_rays;
-  // Variance of the luminance of `direct` due to the sampling of sources. Empty if the method does
-  // not estimate it.
+  // Variance of a sample's luminance due to the sampling of sources and to gather rays of its own.
+  // Empty if the method does not estimate it.
   std::vector<float> direct_variance;
-  // Standard error of the luminance of `indirect` that all samples of a pixel share. Empty if the
-  // method does not estimate it.
+  // Standard error of the luminance of `indirect` from the fit. The samples of a pixel share it, so
+  // averaging does not reduce it. Empty if the method does not estimate it.
   std::vector<float> shared_error;
-  // One random draw, of either sign, of a further error of `indirect`. Draws of several samples add
-  // up with their signs. Empty if the method does not estimate it.
+  // A signed random draw of the error that the noise of cells causes in the luminance of
+  // `indirect`. Draws of several samples are added with their signs, since samples that read the
+  // same cells err alike. Empty if the method does not estimate it.
   std::vector<float> drawn_error;
-  // Luminance of `indirect` that the two errors above cover, minus the luminance of `direct` that
-  // direct_variance does not cover (emission hit by a lobe's own ray). The error of the rest is
-  // estimated from the spread of the samples. Empty if the method estimates no errors.
+  // Luminance of `indirect` light with an error estimate, minus that of `direct` light without one
+  // (emission hit by a lobe's own ray). So luminance(indirect) - luminance_with_error is the
+  // luminance of all light without an error estimate. The film estimates the error of that light
+  // from the spread of samples. Empty if the method estimates no errors.
   std::vector<float> luminance_with_error;
   // Properties of the first surface hit; zero if nothing is hit.
   std::vector<Rgb> albedo;
@@ -101,12 +103,13 @@ struct RadianceBatch {
   // Correction that has been added to `direct` and `known` to remove the noise of visible lamps'
   // edges. Its mean over a pixel is 0. Empty if there is none (LightOutlines).
   std::vector<Rgb> edge_correction;
-  // Largest luminance of `direct` that a single sampled point of a source has brought; 0 if none
-  // was sampled. It bounds the error where no sample happened to be occluded, so that the samples
-  // do not differ.
+  // Largest contribution of a single sampled source point to the luminance of `direct`; 0 if none
+  // was sampled. It gives a lower bound of the error: if by chance no sample was occluded, the
+  // samples do not differ, although their mean may be too large.
   float largest_draw = 0;
-  // Random draws of the error of the luminance of `indirect`, summed over all entries, that more
-  // samples do not reduce. 0 if the method does not estimate it.
+  // Random draws of the error that the noise of cells causes in the luminance of `indirect`, summed
+  // over all entries. All samples read the same cells, so more samples do not reduce it. 0 if the
+  // method does not estimate it.
   NoiseDraws noise{};
   void reset(size_t n) {
     direct.assign(n, Rgb{0});
@@ -139,13 +142,13 @@ struct RadianceBatch {
     (is_direct ? direct : indirect)[i] += light;
     if (is_direct && !direct_variance.empty()) direct_variance[i] += variance;
   }
-  // Notes the luminance that one sampled point of a source has brought.
+  // Records the luminance that one sampled point of a source contributes.
   void note_draw(bool is_direct, float luminance) {
     if (is_direct) largest_draw = std::max(largest_draw, luminance);
   }
-  // Excludes direct light of this luminance from the estimated variance. If the spread of samples
-  // is not used, the square of the luminance is added, since the mean square bounds the variance of
-  // a sample.
+  // Marks direct light of this luminance as light without an estimated variance. With
+  // luminance_with_error, the film uses the spread of samples for it. Otherwise the square of the
+  // luminance is added to direct_variance, since the mean square bounds the variance of a sample.
   void exclude_from_error(size_t i, float luminance) {
     if (!luminance_with_error.empty())
       luminance_with_error[i] -= luminance;
@@ -154,7 +157,7 @@ struct RadianceBatch {
   }
 };
 
-// Counts of work done. Counts of batches are added up.
+// Counts of work done; += adds those of another batch.
 struct Counters {
   uint64_t viewing_rays = 0;
   uint64_t surrogates = 0;      // viewing rays that only look up known radiance

@@ -1,9 +1,9 @@
 // Interface of direct light: light straight from sources. WaveIntegrator combines one
 // DirectLight with at most one IndirectLight.
 //
-// A walk passes its hits to queue(), a few dozen at a time; flush() ends a wave. By then the light
-// of the hits, times the walks' throughput, has been added to `out` at the walks' indices. One
-// virtual call serves a few dozen hits.
+// The integrator passes the hits of walks to queue(), a few dozen per virtual call, and calls
+// flush() at the end of each wave. When flush() returns, the light of all queued hits, times the
+// walks' throughput, has been added to `out` at the walks' indices.
 #pragma once
 
 #include <memory>
@@ -19,10 +19,10 @@ struct DirectLightScratch {
   virtual ~DirectLightScratch() = default;
 };
 
-// The part of a surface's scattering that walks follow, in competition with the sampling of
-// sources.
+// The part of a surface's scattering from which walks sample their next direction. Emission that
+// they then hit is weighted against source sampling by MIS (weigh()).
 enum class WalkedPart : uint8_t {
-  whole,     // all of it, unless the surface is Lambertian
+  whole,     // the whole BSDF; walks end at Lambertian surfaces
   specular,  // mirror, gloss and transmission: SurfaceScattering::specular
 };
 
@@ -39,15 +39,15 @@ class DirectLight {
   // Walks must not count emission that they meet by way of such a mirror.
   virtual std::shared_ptr<const MirrorImages> images() const { return nullptr; }
 
-  // Starts a batch and drops what was learnt from the previous one. `request` must stay valid until
-  // the next call.
+  // Starts a batch and drops state of the previous one, such as facets that rays have found.
+  // `request` must stay valid until the next call.
   virtual void begin(const SampleRequest&, DirectLightScratch&) const {}
   virtual void queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBatch& out,
                      Counters& counters) const = 0;
   virtual void flush(DirectLightScratch& scratch, RadianceBatch& out, Counters& counters) const = 0;
 
-  // Sets seen.weights, which are 1 on entry, for emission that walks have hit. Each walk left a
-  // vertex whose sources were sampled, by a lobe that is not a delta.
+  // Sets seen.weights (1 on entry), the MIS weights of emission that walks have hit. Each of these
+  // walks left its last vertex by a non-delta lobe, and sources were sampled there too.
   virtual void weigh(SeenEmission& seen) const = 0;
 };
 

@@ -113,7 +113,7 @@ TEST_CASE("masks within masks, and coats that absorb") {
   CHECK(coat("0").materials.at(0).kind == MaterialKind::coated_diffuse);
   CHECK(coat("0").materials.at(0).base_color.value.r == 0.5f);
   const Scene dark = coat(".1 .2 3");
-  CHECK(has_warning(dark, "absorbs"));
+  CHECK(has_warning(dark, "absorption"));
   // Between normal passage and the longest one, at the critical angle.
   const Rgb kept = dark.materials.at(0).base_color.value * 2;
   CHECK(double(kept.r) < std::exp(-0.4));
