@@ -61,7 +61,7 @@ std::string summary(const Report& r) {
         r.options.maintenance);
   else
     h += "Daylight only: no luminaire is on.";
-  return h + " ± is the standard error of the computation (see the appendix).</p>\n" +
+  return h + " ± is the uncertainty of the computation (see the appendix).</p>\n" +
          summary_matrix(r) + colour_rendering(r) + undecided_list(r);
 }
 
@@ -258,7 +258,7 @@ std::string picture_section(const std::vector<ReportPicture>& pictures) {
                     factor_legend(p.scale.least, p.scale.largest, "cd/m²", full_width),
                 fmt::format("Initial luminances{}; mean {} cd/m²{}.", camera, short_number(p.mean),
                             p.estimated_error > 0
-                                ? fmt::format(", standard error of a pixel {:.1f} % of it",
+                                ? fmt::format(", uncertainty of a pixel {:.1f} % of it",
                                               100 * p.estimated_error)
                                 : ""),
                 "picture");

@@ -374,10 +374,10 @@ TEST_CASE("absorption of glass survives, and losses cause warnings") {
   // Backs: only glTF can express that they are invisible to the eye.
   Scene unseen = scene;
   for (Material& m : unseen.materials) m.back_faces = BackFaces::unseen;
-  CHECK_FALSE(has_warning(export_scene(unseen, folder.path("b.gltf")), "backs"));
+  CHECK_FALSE(has_warning(export_scene(unseen, folder.path("b.gltf")), "back sides"));
   for (const Material& m : import_scene(folder.path("b.gltf")).materials)
     CHECK(m.back_faces == BackFaces::unseen);
-  CHECK(has_warning(export_scene(unseen, folder.path("b.pbrt")), "backs"));
+  CHECK(has_warning(export_scene(unseen, folder.path("b.pbrt")), "back sides"));
 }
 
 TEST_CASE("a measured luminaire keeps its flux") {
