@@ -142,7 +142,6 @@ constexpr std::array rows{
     OptionRow{"--part", limits, "K/N", ""},
     // Methods
     OptionRow{"--solution", certified, "FILE", "*"},
-    OptionRow{"--selection", kj92, "ON", ""},
     OptionRow{"--depth", path, "N", ""},
     OptionRow{"--shadow-rays", fixed, "N", ""},
     OptionRow{"--variance", kj92, "ERROR", ""},
@@ -152,6 +151,7 @@ constexpr std::array rows{
     OptionRow{"--probe-rays", kj92, "N", ""},
     OptionRow{"--coherence", kj92, "ON", ""},
     OptionRow{"--ratio", kj92, "", ""},
+    OptionRow{"--selection", kj92, "ON", ""},
     OptionRow{"--select", kj92, "NAME,…", ""},
 };
 

@@ -107,6 +107,9 @@ uint64_t radiosity_scene_key(const Scene& scene);
 // patches. The mesh is not stored; loading rebuilds it. Little endian.
 std::vector<uint8_t> save_solution(const Scene& scene, const RadiositySolution& solution);
 
+// True if the bytes begin as those of save_solution() do.
+bool is_radiosity_solution(std::span<const uint8_t> bytes);
+
 // Reads a solution from file bytes; `file` names the source in errors. Throws InputError if the
 // bytes are no solution, are damaged or truncated, or come from an interrupted run. It also throws
 // if they belong to another scene or mesh, or to other options than `options` (nullptr: use the

@@ -223,6 +223,10 @@ Header header_of(std::span<const uint8_t> bytes, const std::string& file) {
 
 }  // namespace
 
+bool is_radiosity_solution(std::span<const uint8_t> bytes) {
+  return solution_file.is_of(bytes);
+}
+
 RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::string& file,
                                 const Scene& scene, const Tracer& tracer, const BsdfTables& tables,
                                 const RadiosityOptions* options, int threads) {

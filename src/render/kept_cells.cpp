@@ -1,5 +1,6 @@
 #include "render/kept_cells.h"
 
+#include "base/error.h"
 #include "radiosity/solution.h"
 #include "render/cell_pilot.h"
 #include "render/preparation.h"
@@ -23,6 +24,10 @@ std::vector<uint8_t> save_kept_cells(const PreparedScene& scene, const CellStore
 
 CellStore load_kept_cells(const PreparedScene& scene, std::span<const uint8_t> bytes,
                           const std::string& file) {
+  if (is_radiosity_solution(bytes))
+    throw InputError(file, 0, 0,
+                     "holds a radiosity solution, which only --method kj92 uses; the default keeps "
+                     "cells (troffer radiosity --cells)");
   return load_cells(bytes, file, radiosity_scene_key(scene.scene), scene.tracer);
 }
 

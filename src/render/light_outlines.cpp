@@ -217,7 +217,7 @@ void LightOutlines::take(const PreparedScene& scene, const ViewingCamera& camera
 // samples. This finds occluders between the visited outline points, except for small ones.
 void LightOutlines::check_covers(const PreparedScene& scene, const ViewingCamera& camera,
                                  int threads) {
-  constexpr int across = 4;
+  constexpr int across = 6;
   const double clear = std::max(1e-3, 2 * blur_);  // distance from the outline, pixels
   std::vector<uint8_t> is_wrong(pixels_.size(), 0);
   parallel_for(size_t(region_.height()), threads, [&](size_t row) {

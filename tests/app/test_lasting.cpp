@@ -184,7 +184,7 @@ TEST_CASE("parts that do not make up a picture are refused, each with one line")
   check_refused(merge({a, other_seed}), 1, "other options");
   check_refused(merge({a, other_light}), 1, "another scene");
   check_refused(merge({a, other_layers}), 1, "other options");
-  check_refused(merge({none, a}), 1, "no part");
+  check_refused(merge({none, a}), 1, "not a part");
   check_refused(merge({a, scene}), 1, "room.pbrt");
   check_refused(merge({a, folder.path("missing.exr")}), 1, "cannot open");
   check_refused(run_program(folder, {"merge", folder.path("o.tga"), a, b}), 2, "format");
