@@ -37,10 +37,11 @@ GapFiller::GapFiller(const PreparedScene& scene, const ViewingCamera& camera,
   for (Work& w : work_) w.rays.cone = camera.cone(int(samples_at_once));
 }
 
-void GapFiller::use(std::unique_ptr<Integrator> quick) {
-  integrator_ = std::move(quick);
-  is_by_paths_ = false;
+std::unique_ptr<Integrator> GapFiller::use(std::unique_ptr<Integrator> other, bool is_by_paths) {
+  std::swap(integrator_, other);
+  is_by_paths_ = is_by_paths;
   for (Work& w : work_) w.scratch.reset();
+  return other;
 }
 
 // Traces samples first_sample … first_sample + 3 of each pixel. film: null to discard them.

@@ -24,8 +24,8 @@ class GapFiller {
   // The arguments must outlive this object.
   GapFiller(const PreparedScene& scene, const ViewingCamera& camera, const RenderOptions& options);
 
-  // Replaces path tracing, from the next call on.
-  void use(std::unique_ptr<Integrator> quick);
+  // Replaces the integrator from the next call on, and returns the one so far.
+  std::unique_ptr<Integrator> use(std::unique_ptr<Integrator> other, bool is_by_paths);
   bool is_by_paths() const { return is_by_paths_; }
 
   // Seconds on all threads for the first samples of one pixel: measured here by some rays through

@@ -111,6 +111,7 @@ class Picture {
   void show_preview_in_gaps(const Film& film, RenderResult& result) const;
   void keep_beginning() const;
   void keep_time_for_gaps();
+  void fill_gaps_by(std::unique_ptr<Integrator> quick, double unresolved);
   PlannedPart planned_viewing_rays(const MethodPlan& plan, const MethodSettings& settings) const;
 
   const PreparedScene& scene_;
@@ -207,6 +208,23 @@ void Picture::show_preview_in_gaps(const Film& film, RenderResult& result) const
     }
 }
 
+// Fills gaps by the quick integrator of the method, unless that takes longer than the time left and
+// paths together. unresolved: share of reflected light that its cells do not have.
+void Picture::fill_gaps_by(std::unique_ptr<Integrator> quick, double unresolved) {
+  const double pixels = double(plan_.window.width()) * plan_.window.height();
+  const double by_paths = seconds_per_gap_ * pixels;
+  std::unique_ptr<Integrator> paths = filler_->use(std::move(quick), false);
+  keep_time_for_gaps();
+  const double left = std::max(options_.deadline->seconds_left(), 0.0);
+  if (seconds_per_gap_ * pixels <= left + by_paths) {
+    missing_light_ = unresolved;
+    return;
+  }
+  filler_->use(std::move(paths), true);
+  seconds_per_gap_ = by_paths / pixels;
+  options_.deadline->keep_back(by_paths);
+}
+
 // Describes how many viewing rays pixels get.
 PlannedPart Picture::planned_viewing_rays(const MethodPlan& plan,
                                           const MethodSettings& settings) const {
@@ -258,11 +276,7 @@ void Picture::render(const Preparation* preparation, RenderResult& result) {
       });
   RenderStatistics& statistics = result.statistics;
   statistics.cells = cells.statistics;
-  if (cells.quick) {
-    filler_->use(std::move(cells.quick));
-    keep_time_for_gaps();
-    missing_light_ = cells.statistics.unresolved;
-  }
+  if (cells.quick) fill_gaps_by(std::move(cells.quick), cells.statistics.unresolved);
   if (!integrator) return;
   statistics.is_by_paths = integrator->sampling().is_by_noise();
   Rendering rendering(scene_, viewing_, *integrator, options_, plan_, of_tiles, stop_);
