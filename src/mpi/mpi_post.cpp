@@ -89,16 +89,16 @@ void MpiPost::close(int status) {
 
 std::optional<Message> MpiPost::receive() {
   int flag = 0;
-  MPI_Message message = MPI_MESSAGE_NULL;
+  MPI_Message probed = MPI_MESSAGE_NULL;
   MPI_Status status;
-  if (MPI_Improbe(MPI_ANY_SOURCE, tag, MPI_COMM_WORLD, &flag, &message, &status) == MPI_SUCCESS &&
+  if (MPI_Improbe(MPI_ANY_SOURCE, tag, MPI_COMM_WORLD, &flag, &probed, &status) == MPI_SUCCESS &&
       flag != 0) {
     int size = 0;
     MPI_Get_count(&status, MPI_BYTE, &size);
     Moving::In& in = moving_->in.emplace_back();
     in.message.from = status.MPI_SOURCE;
     in.message.bytes.resize(size_t(size));
-    MPI_Imrecv(in.message.bytes.data(), size, MPI_BYTE, &message, &in.request);
+    MPI_Imrecv(in.message.bytes.data(), size, MPI_BYTE, &probed, &in.request);
   }
   for (auto in = moving_->in.begin(); in != moving_->in.end();) {
     const Journey journey = look_at(in->request);
@@ -106,9 +106,9 @@ std::optional<Message> MpiPost::receive() {
       ++in;
       continue;
     }
-    Message message = std::move(in->message);
+    Message arrived = std::move(in->message);
     in = moving_->in.erase(in);
-    if (journey == Journey::arrived) return message;
+    if (journey == Journey::arrived) return arrived;
   }
   return std::nullopt;
 }

@@ -24,7 +24,7 @@ SortedTriangle sorted(const Mesh& mesh, uint32_t m, uint32_t t) {
   std::array<Vec3, 3> corners;
   for (size_t k = 0; k < 3; ++k) corners[k] = mesh.positions[mesh.triangles[t][k]];
   SortedTriangle s{0, m, t, false};
-  for (const auto [i, k] : {std::pair{0, 1}, {1, 2}, {0, 1}})
+  for (const auto& [i, k] : {std::pair{0, 1}, {1, 2}, {0, 1}})
     if (is_less(corners[size_t(k)], corners[size_t(i)])) {
       std::swap(corners[size_t(i)], corners[size_t(k)]);
       s.is_odd = !s.is_odd;
