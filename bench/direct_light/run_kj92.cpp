@@ -10,7 +10,7 @@ namespace troffer::bench {
 
 namespace {
 
-// As in kj92/tree_sampling.cpp.
+// Copies of the constants in kj92/tree_sampling.cpp.
 constexpr float small_source = 0.002f, large_source = 0.5f;
 constexpr size_t packet_rays = 4;
 

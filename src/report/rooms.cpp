@@ -200,7 +200,7 @@ class RoomFinder {
     const std::vector<double> areas = areas_of_sets(), walls = areas_of(CellUse::wall),
                               bodies = areas_of(CellUse::furniture);
     const std::set<size_t> is_room(roots.begin(), roots.end());
-    // By region: the adjacent rooms, or no_plane_cell for the outside.
+    // Adjacent rooms of each region; no_plane_cell: the outside.
     std::map<size_t, std::set<size_t>> around;
     for (const CellContact& c : cells_.contacts)
       for (const auto& [one, other] : {std::pair{c.left, c.right}, std::pair{c.right, c.left}}) {

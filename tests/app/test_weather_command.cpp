@@ -62,7 +62,7 @@ TEST_CASE("an hour with only direct light has its sun") {
   WeatherTest t;
   const double alone = t.lx(epw(equator, "3,21", 13, "780,800,0"), "03-21T12:30");
   const double with_little = t.lx(epw(equator, "3,21", 13, "781,800,1"), "03-21T12:30");
-  // By Perez' efficacies for clear skies a watt of beam has 90 to 110 lm; the sun is near the
+  // A watt of beam has 90 to 110 lm by Perez' efficacies for clear skies; the sun is near the
   // zenith.
   CHECK(alone > 70'000);
   CHECK(alone < 90'000);

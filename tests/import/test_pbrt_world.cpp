@@ -382,7 +382,8 @@ TEST_CASE("rgb in other colour spaces becomes linear sRGB by their primaries") {
     const char* name;
     Rgb reflectance;
   };
-  // By published matrices: ITU-R BT.2407, Display P3's with the same primaries, the Academy's.
+  // Values by published matrices: ITU-R BT.2407, Display P3's with the same primaries, the
+  // Academy's.
   for (const Row& row :
        {Row{"srgb", {0.3f, 0.5f, 0.2f}}, Row{"rec2020", {0.190f, 0.527f, 0.168f}},
         Row{"DCI-P3", {0.255f, 0.508f, 0.174f}}, Row{"aces2065-1", {0.112f, 0.584f, 0.153f}}}) {

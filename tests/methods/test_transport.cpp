@@ -58,8 +58,8 @@ TEST_CASE("a mirror shows a lit floor as it is") {
   add_quad(s, grey, {Vec3{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}});
   add_ceiling_light(s, 1, 2, Rgb{3});
   const PreparedScene scene(std::move(s));
-  // By way of (3, 0, 1) to (1, 0, 0), which the source's mirror image does not light: caustics are
-  // left to paths that meet the source by chance.
+  // The ray goes by way of (3, 0, 1) to (1, 0, 0), which the source's mirror image does not light.
+  // Caustics are left to paths that meet the source by chance.
   const Ray ray = ray_towards({1, 0, 2}, {3, 0, 1});
   const double expected = 0.5 * 3 / pi * irradiance(scene.primitives, 0, {1, 0, 0}, {0, 0, 1});
   const WaveIntegrator fixed = troffer::test::fixed_integrator(scene, 4);

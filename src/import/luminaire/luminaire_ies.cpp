@@ -266,8 +266,8 @@ bool has_commas_in_numbers(std::string_view bytes) {
 
 }  // namespace
 
-// By the standard, commas separate numbers. If the file is not valid that way, commas are tried as
-// decimal points.
+// Commas separate numbers, as the standard has it. If the file is not valid that way, commas are
+// tried as decimal points.
 Luminaire read_ies(const std::string& path, std::string_view bytes, const std::string& folder,
                    WarningLog& warnings) {
   WarningLog own;
