@@ -14,6 +14,7 @@ namespace troffer::stream {
 inline constexpr uint64_t gap_filler = 0x6761'7073;
 inline constexpr uint64_t preview = 0x6c6f'6f6b;
 inline constexpr uint64_t surrogate_rays = 0x676c'616e;
+inline constexpr uint64_t further_test = 0x6675'7274;
 inline constexpr uint64_t typical_luminance = 0x7479'7069;
 inline constexpr uint64_t path_forecast = 0x7061'7468;
 inline constexpr uint64_t outline_check = 0x6f75'746c;
@@ -44,6 +45,7 @@ inline constexpr uint64_t far_side = 0x6661'7220'7369'6465;
 inline constexpr uint64_t mirror_image_of_hit = 0x696d'6167;
 inline constexpr uint64_t mirror_image_of_arrival = 0x696d'6761;
 inline constexpr uint64_t mirror_image_of_path = 0x696d'6770;
+inline constexpr uint64_t end_at_cell = 0x656e'6463;
 inline constexpr uint64_t matte_light_samples = 0x6d61'7474;
 inline constexpr uint64_t reduced_light_samples = 0x7468'7269'0000;  // + an index under 2^16
 inline constexpr uint64_t reduced_gather_rays = 0x7468'7266'0000;    // + an index under 2^16

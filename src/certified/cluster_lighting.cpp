@@ -6,6 +6,7 @@
 #include "base/streams.h"
 #include "certified/open_parts.h"
 #include "shadow/pilot_rays.h"
+#include "transport/costs.h"
 
 namespace troffer {
 
@@ -16,22 +17,6 @@ namespace {
 float luminance_floor(float weight, float typical) {
   constexpr float share = 0.01f;
   return weight > 0 ? std::min(share * typical / weight, 1e15f) : 0;
-}
-
-// Costs of certificates in shadow rays. In this order: a cluster and source, a hit and source, a
-// mask, a facet in a mask, and a point at which a glossy BRDF or a texture is evaluated.
-constexpr double rays_of_gather = 12, rays_of_pair = 0.15, rays_of_mask = 0.3,
-                 rays_of_facet = 1.0 / 12, rays_of_point = 0.3;
-
-struct Counted {
-  CertifiedCounters counters;
-  uint64_t rays = 0;
-};
-// Cost of the masks and rays counted from `a` to `b`, in shadow rays.
-double rays_between(const Counted& a, const Counted& b) {
-  return double(b.rays - a.rays) + rays_of_mask * double(b.counters.masks - a.counters.masks) +
-         rays_of_facet * double(b.counters.mask_facets - a.counters.mask_facets) +
-         rays_of_point * double(b.counters.points - a.counters.points);
 }
 
 // Rays per hit so that the sky's light and the suns' light each err by `error`, relative to what
@@ -101,11 +86,17 @@ std::span<const float> ClusterLighting::certify(std::span<const uint32_t> member
   set_requests(has_far);
   if (s_.cluster.requests.empty()) return {};
   s_.cluster.shadow.set(s_.cluster.receivers);
+  const CertifiedCounters before = s_.cluster.memory.counters;
   certified_light(s_.cluster.shadow, s_.cluster.requests, &s_.integrand, s_.world, s_.options,
                   s_.cluster.memory,
                   [&](uint32_t request, std::span<const SourceVisibility> answers) {
                     add_answers(request, members, answers);
                   });
+  const CertifiedCounters& after = s_.cluster.memory.counters;
+  counters_.clusters += after.clusters - before.clusters;
+  counters_.masks += after.masks - before.masks;
+  counters_.mask_facets += after.mask_facets - before.mask_facets;
+  counters_.points += after.points - before.points;
   DrawingBudget budget = budget_;
   budget.is_picture = s_.request.is_picture;
   sample_open_parts(
@@ -134,7 +125,7 @@ void ClusterLighting::certify_or_draw(std::span<const uint32_t> members) {
   constexpr size_t few = 4;
   const auto draws = double(s_.chosen.draws), n = double(members.size());
   bool are_drawn = certify_all(sources_.groups(), s_.chosen);
-  double rays = (rays_of_gather / n + rays_of_pair) * double(s_.chosen.certified.size());
+  double rays = (cost_of_cluster / n + cost_of_pair) * double(s_.chosen.certified.size());
   s_.first.clear();
   s_.rest.clear();
   const size_t step = std::max<size_t>(members.size() / few, 1);
@@ -143,10 +134,9 @@ void ClusterLighting::certify_or_draw(std::span<const uint32_t> members) {
         .push_back(members[i]);
   if (!s_.first.empty()) {
     if (are_drawn) draw(s_.first);
-    const Counted before{s_.cluster.memory.counters, counters_.shadow_rays};
+    const double before = cost_of_rays_and_masks(counters_);
     certify(s_.first, false);
-    const Counted after{s_.cluster.memory.counters, counters_.shadow_rays};
-    rays += rays_between(before, after) / double(s_.first.size());
+    rays += (cost_of_rays_and_masks(counters_) - before) / double(s_.first.size());
   }
   if (rays > draws) {
     certify_none(s_.chosen);
@@ -177,16 +167,16 @@ bool ClusterLighting::is_proof_of_far_worth(std::span<const uint32_t> members) {
   constexpr double cost_of_gloss = 4;    // in rays per sky patch, extra for a glossy hit
   // rays of a pixel's further viewing rays, relative to the first ones
   constexpr double share_of_further = 0.25;
-  // Above the open share `open_enough`, proofs need more than cost_of_mask rays per sky patch to
-  // pay.
-  constexpr double cost_of_mask = 40, open_enough = 0.25;
+  // Above the open share `open_enough`, proofs need more than cost_of_patch_proof rays per sky
+  // patch to pay.
+  constexpr double cost_of_patch_proof = 40, open_enough = 0.25;
   if (s_.far.seems_closed) return false;
   if (!s_.request.is_picture) return true;
   if (s_.far.is_behind_clutter) return false;
   const double rays =
       rays_of_hit(s_.far, environment_.points.suns() > 0, double(s_.options.mask_error));
   const size_t cells = sources_.all().size() - environment_.first_source;
-  if (s_.far.open > open_enough && rays < cost_of_mask * double(cells)) return false;
+  if (s_.far.open > open_enough && rays < cost_of_patch_proof * double(cells)) return false;
   double all = 0, proofs = cost_of_look;
   for (const uint32_t m : members) {
     all += s_.hits.samples[m] < uint32_t(budget_.viewing_rays)

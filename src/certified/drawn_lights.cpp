@@ -6,6 +6,7 @@
 #include "base/box.h"
 #include "base/random.h"
 #include "light/light.h"
+#include "transport/costs.h"
 
 namespace troffer {
 
@@ -17,7 +18,6 @@ constexpr float error_of_one = 0.4f;
 constexpr float most_draws = 256;  // largest number of samples per hit
 // Costs of a certified light in shadow rays: per hit, and per cluster. Profiled
 // (docs/method/certified-appendix.md, "Many lights").
-constexpr float cost_of_hit = 0.15f, cost_of_cluster = 12;
 
 float points_of_pixel(float share, float error) {
   return std::pow(share * error_of_one / error, 1.5f);
@@ -47,7 +47,7 @@ void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hi
   for (uint32_t g = 0; g < n; ++g) total += double(out.estimates[g]);
   const bool are_all = !groups.are_many();
   const float points = points_of_pixel(1, budget.error);
-  const float cost = cost_of_hit + cost_of_cluster / float(hits);
+  const float cost = float(cost_of_pair + cost_of_cluster / double(hits));
   // least share that pays, at r = 1
   const float least = 2.0f / 3 * cost * budget.viewing_rays / points;
   for (uint32_t g = 0; g < n; ++g)

@@ -25,6 +25,9 @@ constexpr double size_by_error = 0.58;   // power of the error by which cells ar
 // Cells with fewer first rays than this get direct light from light samples, not from certificates:
 // this many samples per ray.
 constexpr uint32_t rays_for_proofs = 4, draws_of_ray = 2;
+// Asked error of a cell's direct light over that of the picture. Every pixel averages a hundred
+// cells or more, and a third of the asked error is left to their noise.
+constexpr double cells_of_mean = 10.0 / 3;
 constexpr int most_rounds = 12;
 constexpr size_t tasks_at_a_time = 1 << 14;
 // Least factor by which points must need more rays of cells for these to be traced.
@@ -260,10 +263,18 @@ bool Builder::add_direct(const DirectLight& direct, CellDirectLight& lit) {
     first = map_->frozen();
   }
   // Kept cells all get full direct light, because they may matter more to the next view.
-  std::vector<uint8_t> draws(map_->size(), 0);
-  for (uint32_t c = 0; store_ == nullptr && c < draws.size(); ++c)
-    if (plan_.first_rays(c) < rays_for_proofs)
-      draws[c] = uint8_t(draws_of_ray * plan_.first_rays(c));
+  std::vector<uint16_t> draws(map_->size(), 0);
+  // The noise of cells is shared by all that see them; measuring points cannot average it out.
+  uint32_t each = 0;
+  if (store_ == nullptr && options_.points.most_rays <= 0)
+    each = samples_instead_of_proofs(*map_, lighting_by(direct),
+                                     {options_.error * cells_of_mean, options_.rays_for_direct},
+                                     counters_);
+  for (uint32_t c = 0; store_ == nullptr && c < draws.size(); ++c) {
+    const uint32_t rays = plan_.first_rays(c);
+    if (each > 0 || rays < rays_for_proofs)
+      draws[c] = uint16_t(std::max(draws_of_ray * rays, each * rays / RowPlan::rays_of_row));
+  }
   add_direct_light(*map_, lighting_by(direct), draws, first, lit, counters_);
   return !stop_.load();
 }

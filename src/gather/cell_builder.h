@@ -31,6 +31,8 @@ struct CellBuilderOptions {
   double error = 0.01;      // asked error of the picture, or of the points
   // Limit of the number of cells; with more, make_cells() returns null.
   double most_cells = std::numeric_limits<double>::infinity();
+  // Budget for direct light at all cells of a picture, in rays (costs.h).
+  double rays_for_direct = std::numeric_limits<double>::infinity();
   ProcessGroup* group = nullptr;  // processes that make the same cells together; may be null
   // Gather rays of measuring points; most_rays is 0 if the pilot has no measuring points.
   GatheringPoints points{};

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/streams.h"
+#include "transport/costs.h"
 
 namespace troffer {
 
@@ -124,7 +125,7 @@ void light_group(const CellMap& map, const CellLighting& by, std::span<const uin
 
 // Like light_group(), by light samples.
 void sample_group(const CellMap& map, const CellLighting& by, std::span<const uint32_t> cells,
-                  std::span<const uint8_t> samples, Worker& w, CellDirectLight& light) {
+                  std::span<const uint16_t> samples, Worker& w, CellDirectLight& light) {
   w.arrivals.clear();
   for (const uint32_t c : cells)
     for (uint32_t k = 0; k < samples[c]; ++k) {
@@ -151,7 +152,7 @@ void sample_group(const CellMap& map, const CellLighting& by, std::span<const ui
 
 }  // namespace
 
-void add_direct_light(const CellMap& map, const CellLighting& by, std::span<const uint8_t> samples,
+void add_direct_light(const CellMap& map, const CellLighting& by, std::span<const uint16_t> samples,
                       size_t first_cell, CellDirectLight& light, Counters& counters) {
   const std::vector<uint32_t> order = cells_in_order(map, first_cell);
   light.irradiance.resize(map.size());
@@ -188,6 +189,40 @@ void add_direct_light(const CellMap& map, const CellLighting& by, std::span<cons
   };
   share(by.group, work, by.stop);
   for (const Worker& w : workers) counters += w.counters;
+}
+
+uint32_t samples_instead_of_proofs(const CellMap& map, const CellLighting& by,
+                                   const CellLightNeed& need, Counters& counters) {
+  constexpr size_t groups_tried = 16;
+  constexpr uint32_t samples_tried = 32;
+  constexpr double least = 8, most = 256;
+  const std::vector<uint32_t> order = cells_in_order(map, 0);
+  const size_t groups = (order.size() + cells_of_group - 1) / cells_of_group;
+  CellDirectLight light{std::vector<Rgb>(map.size()), std::vector<float>(map.size(), 0)};
+  const std::vector<uint16_t> samples(map.size(), samples_tried);
+  Worker proofs, sampling;
+  double variance = 0, squares = 0, cells_tried = 0;
+  for (size_t k = 0; k < std::min(groups, groups_tried); ++k) {
+    if (by.stop.load(std::memory_order_relaxed)) return 0;
+    const size_t first = k * groups / std::min(groups, groups_tried) * cells_of_group;
+    const std::span<const uint32_t> cells =
+        std::span(order).subspan(first, std::min(cells_of_group, order.size() - first));
+    light_group(map, by, cells, proofs, light);
+    for (const uint32_t c : cells) squares += sqr(double(luminance(light.irradiance[c])));
+    sample_group(map, by, cells, samples, sampling, light);
+    for (const uint32_t c : cells)
+      variance += samples_tried * sqr(double(light.half_difference[c]));
+    cells_tried += double(cells.size());
+  }
+  counters += proofs.counters;
+  counters += sampling.counters;
+  if (!(squares > 0)) return 0;
+  const double of_sample = cost_of(sampling.counters) / (cells_tried * samples_tried),
+               of_proofs = cost_of(proofs.counters) / cells_tried,
+               budget = need.rays / double(map.size()),
+               wanted = variance / (sqr(need.error) * squares);
+  if (of_proofs <= std::min(wanted * of_sample, budget)) return 0;
+  return uint32_t(std::clamp(wanted, least, std::clamp(budget / of_sample, least, most)));
 }
 
 std::vector<Rgb> direct_light_at(std::span<const CellHit> places, const CellLighting& by,

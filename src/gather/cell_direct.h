@@ -32,8 +32,19 @@ struct CellLighting {
 // Computes direct light of all cells from number `first` on; values of earlier cells stay. Cells
 // near each other are lit in groups. samples: per cell, the number of light samples of one light
 // each, as in path tracing; 0 or missing: by CellLighting::direct.
-void add_direct_light(const CellMap& map, const CellLighting& by, std::span<const uint8_t> samples,
+void add_direct_light(const CellMap& map, const CellLighting& by, std::span<const uint16_t> samples,
                       size_t first, CellDirectLight& light, Counters& counters);
+
+// Accuracy and cost that are asked of cells' direct light.
+struct CellLightNeed {
+  double error = 0;  // relative to the root mean square of that light
+  double rays = 0;   // budget for all cells, in rays
+};
+// Returns the number of light samples per cell that meet the error, if they cost less than
+// CellLighting::direct, or if that exceeds the budget; 0 otherwise. Samples are limited by the
+// budget, too. Tests both ways at a few groups of cells.
+uint32_t samples_instead_of_proofs(const CellMap& map, const CellLighting& by,
+                                   const CellLightNeed& need, Counters& counters);
 
 // Returns the irradiance straight from sources at each place, weighted by its coat. This process
 // alone lights them.

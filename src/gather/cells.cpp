@@ -45,6 +45,16 @@ bool Cells::indirect_at(const CellHit& hit, float distance, Rgb& irradiance,
   return true;
 }
 
+bool Cells::irradiance_at(const CellHit& hit, float distance, Rgb& irradiance,
+                          float& half_difference) const {
+  if (distance < map_->near()) return false;
+  const uint32_t cell = map_->find(hit, distance);
+  if (cell == no_cell) return false;
+  irradiance = irradiance_[cell];
+  half_difference = half_difference_[cell];
+  return true;
+}
+
 CellLightAt Cells::light_at(const CellHit& hit) const {
   const uint32_t cell = map_->find_from_afar(hit);
   if (cell == no_cell) return {};

@@ -85,6 +85,9 @@ class Cells {
   // its luminance (CellLight). False if there is no cell, or the distance is below CellMap::near().
   bool indirect_at(const CellHit& hit, float distance, Rgb& irradiance,
                    float& half_difference) const;
+  // Reads all irradiance at a place, under the same terms.
+  bool irradiance_at(const CellHit& hit, float distance, Rgb& irradiance,
+                     float& half_difference) const;
   // Returns the irradiance of the finest cell there; black if there is none.
   CellLightAt light_at(const CellHit& hit) const;
 

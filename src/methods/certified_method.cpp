@@ -1,5 +1,7 @@
 #include "methods/certified_method.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,41 +26,36 @@ double error_of_gather(double asked) {
   return std::sqrt(asked * std::min(asked, as_asked));
 }
 
-// Cells and the records of a picture; null if a stop came before they were complete.
-struct GatheredCells {
-  std::shared_ptr<const Cells> cells;
-  std::shared_ptr<const GatherRecords> records;  // null also without a picture
-  bool is_whole = false;
-};
+// Returns the callback of a part of the preparation's progress.
+std::function<void(double)> part_of_progress(const MethodInput& in, double first, double last) {
+  if (!in.cells->progress) return nullptr;
+  return [&in, first, last](double f) { in.cells->progress(first + (last - first) * f); };
+}
 
-// Makes the cells of the plan and gathers from them. direct: direct light at cells.
-GatheredCells gather(const MethodPlan& plan, const MethodInput& in, const DirectLight& direct) {
+// Makes the cells of the plan; null after a stop, or if there are too many. direct: direct light at
+// cells. last: their share of the preparation's progress.
+std::shared_ptr<const Cells> cells_of(const MethodPlan& plan, const MethodInput& in,
+                                      const DirectLight& direct, double last) {
   TROFFER_CHECK(in.cells != nullptr);
-  const auto part = [&](double first, double last) -> std::function<void(double)> {
-    if (!in.cells->progress) return nullptr;
-    return [&in, first, last](double f) { in.cells->progress(first + (last - first) * f); };
-  };
-  GatheredCells made;
-  std::unique_ptr<Cells> cells =
-      make_cells(in.scene, direct, in.cells->pilot,
-                 {in.settings.threads, in.cells->seed, error_beyond_first(in), in.settings.error,
-                  plan.most_cells, in.cells->group, in.cells->points, in.cells->enough},
-                 in.cells->store, part(0, 0.4), in.cells->stop, in.cells->counters);
-  if (!cells) return made;
+  std::unique_ptr<Cells> cells = make_cells(
+      in.scene, direct, in.cells->pilot,
+      {in.settings.threads, in.cells->seed, error_beyond_first(in), in.settings.error,
+       plan.most_cells, plan.rays_for_direct, in.cells->group, in.cells->points, in.cells->enough},
+      in.cells->store, part_of_progress(in, 0, last), in.cells->stop, in.cells->counters);
+  if (!cells) return nullptr;
   in.cells->statistics = cells->statistics();
   if (in.cells->points.most_rays > 0)
     cells->resolve_narrow_where_worth_it(in.cells->pilot.places, in.cells->seed,
                                          in.cells->counters);
-  made.cells = std::move(cells);
-  if (in.cells->view != nullptr) {
-    const GatherOptions options{error_of_gather(in.settings.error),
-                                made.cells->statistics().typical, in.settings.threads,
-                                in.cells->seed, in.cells->group};
-    made.records = GatherRecords::make(*made.cells, *in.cells->view, options, part(0.4, 1),
-                                       in.cells->stop, in.cells->counters);
-  }
-  made.is_whole = in.cells->view == nullptr || made.records != nullptr;
-  return made;
+  return cells;
+}
+
+// Gathers from cells for the picture. Returns null after a stop.
+std::shared_ptr<const GatherRecords> gather(const MethodInput& in, const Cells& cells) {
+  const GatherOptions options{error_of_gather(in.settings.error), cells.statistics().typical,
+                              in.settings.threads, in.cells->seed, in.cells->group};
+  return GatherRecords::make(cells, *in.cells->view, options, part_of_progress(in, 0.4, 1),
+                             in.cells->stop, in.cells->counters);
 }
 
 // One stage of direct light and its settings.
@@ -115,6 +112,32 @@ std::unique_ptr<Integrator> make_paths(const MethodPlan& plan, const MethodInput
                                               most_by_paths(in.settings.most_viewing_rays))});
 }
 
+// Makes a path tracer that ends at these cells.
+std::unique_ptr<Integrator> cached_paths(const MethodInput& in,
+                                         const std::shared_ptr<const Cells>& cells,
+                                         const PixelSampling& sampling) {
+  return std::make_unique<PathIntegrator>(
+      in.scene, PathOptions{in.settings.depth, false, sampling, false, nullptr, cells});
+}
+
+// Returns a path tracer that ends at the cells if test paths show that it costs less than path
+// tracing, and than the least that gathers from the cells cost; null otherwise.
+std::unique_ptr<Integrator> cached_paths_if_cheaper(const MethodPlan& plan, const MethodInput& in,
+                                                    const std::shared_ptr<const Cells>& cells) {
+  const double error = error_by_paths(in.settings.error);
+  const int most = most_by_paths(in.settings.most_viewing_rays);
+  const PathForecast cached = forecast_paths(*cached_paths(in, cells, {}), *in.cells->view, error,
+                                             most, in.cells->seed, in.cells->counters);
+  const double gathers = least_cost_of_gathers(*in.cells->view, error);
+  const bool is_cheaper = cached.rays < std::min(plan.forecast->rays, gathers);
+  in.cells->decisions.push_back(
+      {"paths that end at cells", is_cheaper ? "for the whole picture" : "no",
+       fmt::format("they would take {:.3g} viewing rays per pixel and {:.3g} million rays; gathers "
+                   "take at least {:.3g} million",
+                   cached.viewing_rays, cached.rays * 1e-6, gathers * 1e-6)});
+  return is_cheaper ? cached_paths(in, cells, sampling_by_paths(cached, error, most)) : nullptr;
+}
+
 // Makes cells and their gathers, then the integrator that reads them.
 std::unique_ptr<Integrator> make_by_cells(const MethodPlan& plan, const MethodInput& in,
                                           const std::shared_ptr<const Occluders>& occluders,
@@ -125,20 +148,39 @@ std::unique_ptr<Integrator> make_by_cells(const MethodPlan& plan, const MethodIn
   if (plan.further.draws > 0)
     further = std::make_unique<CertifiedDirect>(in.scene, occluders, plan.further);
   add_images(in, {{first, plan.first}, {at_cells, plan.at_cells}, {further, plan.further}});
-  const GatheredCells made = gather(plan, in, *at_cells);
-  if (made.cells && in.cells->enough != nullptr)
-    in.cells->quick = make_quick(in, occluders, made.cells, made.records);
-  if (!made.is_whole)
-    return plan.forecast && !in.cells->stop.load() ? make_paths(plan, in) : nullptr;
+  const std::shared_ptr<const Cells> cells =
+      cells_of(plan, in, *at_cells, in.cells->view != nullptr ? 0.4 : 1);
+  if (!cells) return plan.forecast && !in.cells->stop.load() ? make_paths(plan, in) : nullptr;
+  if (plan.forecast)
+    if (std::unique_ptr<Integrator> paths = cached_paths_if_cheaper(plan, in, cells)) return paths;
+  std::shared_ptr<const GatherRecords> records;
+  if (in.cells->view != nullptr) records = gather(in, *cells);
+  if (in.cells->enough != nullptr) in.cells->quick = make_quick(in, occluders, cells, records);
+  if (in.cells->view != nullptr && !records) return nullptr;
   if (!further) further = std::move(at_cells);
   constexpr auto all = std::numeric_limits<uint32_t>::max();
   const uint32_t samples = in.cells->view != nullptr ? uint32_t(in.settings.viewing_rays) : all;
   return std::make_unique<WaveIntegrator>(
       in.scene, std::make_unique<StagedDirect>(std::move(first), std::move(further), samples),
-      std::make_unique<CellsIndirect>(made.cells, made.records));
+      std::make_unique<CellsIndirect>(cells, records), false,
+      records ? cached_paths(in, cells, {}) : nullptr);
 }
 
 }  // namespace
+
+MethodPlan plan_cached_path(const MethodInput& in) {
+  MethodPlan plan;
+  plan.light = PlannedLight::cells;
+  plan.at_cells = settings_of_cells(in);
+  plan.parts.push_back({"all light", "path tracing to the first cell", "asked for"});
+  return plan;
+}
+
+std::unique_ptr<Integrator> make_cached_path(const MethodPlan& plan, const MethodInput& in) {
+  const CertifiedDirect at_cells(in.scene, occluders_for(in), plan.at_cells);
+  const std::shared_ptr<const Cells> cells = cells_of(plan, in, at_cells, 1);
+  return cells ? cached_paths(in, cells, {}) : nullptr;
+}
 
 std::unique_ptr<Integrator> make_certified(const MethodPlan& plan, const MethodInput& in) {
   if (plan.light == PlannedLight::path_tracing) return make_paths(plan, in);

@@ -12,4 +12,8 @@ namespace troffer {
 // Returns null after a stop, or if there are too many cells and no forecast for paths.
 std::unique_ptr<Integrator> make_certified(const MethodPlan& plan, const MethodInput& in);
 
+// Plans and makes path tracing that ends at cells.
+MethodPlan plan_cached_path(const MethodInput& in);
+std::unique_ptr<Integrator> make_cached_path(const MethodPlan& plan, const MethodInput& in);
+
 }  // namespace troffer

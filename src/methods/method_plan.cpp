@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "methods/methods.h"
+#include "methods/path.h"
 
 namespace troffer {
 
@@ -39,12 +40,6 @@ CertifiedSettings settings_of_further(const MethodInput& in) {
   s.matte_draw_factor = 2;
   return s;
 }
-// Settings at cells. A cell averages eight or more hits, so few samples suffice from a smaller
-// error on.
-CertifiedSettings settings_of_cells(const MethodInput& in) {
-  return drawn_beyond(in, 0.02);
-}
-
 // Settings of the further viewing rays of a picture of direct light alone. The error of a pixel
 // comes from what its many further rays hit, so each of them may err by more in its own light.
 CertifiedSettings settings_of_further_direct(const MethodInput& in) {
@@ -64,8 +59,9 @@ std::optional<PathForecast> forecast(const MethodInput& in) {
       cells.store != nullptr)
     return std::nullopt;
   const int most = most_by_paths(in.settings.most_viewing_rays);
-  const PathForecast f = forecast_paths(in.scene, *cells.view, error_by_paths(in.settings.error),
-                                        most, cells.seed, in.cells->counters);
+  const PathForecast f =
+      forecast_paths(PathIntegrator(in.scene, {}), *cells.view, error_by_paths(in.settings.error),
+                     most, cells.seed, in.cells->counters);
   // Near the limit of viewing rays, many pixels would stop before they reach the asked error.
   if (4 * f.viewing_rays > most) return std::nullopt;
   return f;
@@ -88,22 +84,36 @@ void plan_cells(MethodPlan& plan, const MethodInput& in) {
   plan.first = settings_of_first(in);
   plan.further = settings_of_further(in);
   plan.at_cells = settings_of_cells(in);
-  plan.most_cells =
-      plan.forecast ? plan.forecast->rays_for_cells / rays_of_cell : in.cells->most_cells;
+  plan.most_cells = in.cells->most_cells;
+  if (plan.forecast) {
+    // Preparation takes at most a third of what path tracing would take, half of it for direct
+    // light.
+    const double budget = std::min(plan.forecast->rays_for_cells, plan.forecast->rays / 3);
+    plan.most_cells = budget / rays_of_cell;
+    plan.rays_for_direct = budget / 2;
+  }
   add_direct_parts(plan, in);
   plan.parts.push_back({"direct light of further viewing rays", sampling_in_words(plan.further),
                         "each is a small part of its pixel"});
   std::string reason = "the default for reflected light";
   if (plan.forecast)
     reason = fmt::format(
-        "paths would take {:.3g} viewing rays per pixel and {:.3g} million rays; cells may cost "
-        "{:.3g} million ({:.3g} cells), else paths replace them",
-        plan.forecast->viewing_rays, plan.forecast->rays * 1e-6,
-        plan.forecast->rays_for_cells * 1e-6, plan.most_cells);
+        "paths would take {:.3g} viewing rays per pixel and {:.3g} million rays; paths replace "
+        "cells "
+        "if there are more than {:.3g}",
+        plan.forecast->viewing_rays, plan.forecast->rays * 1e-6, plan.most_cells);
   plan.parts.push_back({"reflected light", "gathered from cells", reason});
 }
 
 }  // namespace
+
+// A cell averages eight or more hits, so few samples suffice from a smaller error on, and its hits
+// share the samples of the sky.
+CertifiedSettings settings_of_cells(const MethodInput& in) {
+  CertifiedSettings s = drawn_beyond(in, 0.02);
+  if (in.cells->view != nullptr) s.viewing_rays = int(hits_per_cell);
+  return s;
+}
 
 int most_by_paths(int asked) {
   constexpr int most = 1 << 14;

@@ -42,6 +42,8 @@ struct MethodPlan {
   // Limit of the number of cells. Beyond it, paths replace cells if there is a forecast. Otherwise
   // make_integrator() returns null.
   double most_cells = std::numeric_limits<double>::infinity();
+  // Budget for direct light at cells, in rays (costs.h).
+  double rays_for_direct = std::numeric_limits<double>::infinity();
 
   // True if the picture is path traced because the forecast says that this costs less.
   bool is_by_forecast() const { return light == PlannedLight::path_tracing && forecast; }
@@ -67,6 +69,8 @@ int most_by_paths(int asked);
 // that are seen in gloss. It is at least 0.1, because errors of many cells average out and gloss
 // carries only a part of the light.
 double error_beyond_first(const MethodInput& in);
+// Settings of direct light at cells of a picture, or of points.
+CertifiedSettings settings_of_cells(const MethodInput& in);
 // Settings of direct light for that error.
 CertifiedSettings settings_beyond_first(const MethodInput& in);
 

@@ -79,7 +79,7 @@ double path_rays(const MethodSettings&, size_t) {
 
 // Rows in the order of the constants of Method and Indirect.
 struct MethodTable {
-  static const std::array<MethodRow, 4> methods;
+  static const std::array<MethodRow, 5> methods;
   static const std::array<IndirectRow, 4> indirects;
 
   template <class Kind, class Rows>
@@ -96,7 +96,7 @@ constexpr double most_rays_of_tile = 1 << 22;
 // The same for `certified`, where few sources get rays.
 constexpr double most_certified_rays_of_tile = 1 << 25;
 
-const std::array<MethodRow, 4> MethodTable::methods{{
+const std::array<MethodRow, 5> MethodTable::methods{{
     {
         .name = "certified",
         .plan = plan_certified,
@@ -136,6 +136,13 @@ const std::array<MethodRow, 4> MethodTable::methods{{
         .plan = plan_path,
         .make = make_path,
         .rays_per_sample = path_rays,
+    },
+    {
+        .name = "cached-path",
+        .plan = plan_cached_path,
+        .make = make_cached_path,
+        .rays_per_sample = path_rays,
+        .usual_indirect = Indirect::cells,
     },
 }};
 

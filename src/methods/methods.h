@@ -28,7 +28,7 @@ struct IndirectRow;
 // knows all by name.
 class Method {
  public:
-  static const Method certified, kj92, fixed, path;
+  static const Method certified, kj92, fixed, path, cached_path;
 
   static std::optional<Method> find(std::string_view name);
   // Returns all names as an enumeration in a sentence: "a, b or c".
@@ -42,7 +42,8 @@ class Method {
   constexpr explicit Method(uint8_t row) : row_(row) {}
   uint8_t row_;
 };
-inline constexpr Method Method::certified{0}, Method::kj92{1}, Method::fixed{2}, Method::path{3};
+inline constexpr Method Method::certified{0}, Method::kj92{1}, Method::fixed{2}, Method::path{3},
+    Method::cached_path{4};
 
 // Names a way of computing reflected light. automatic: the method's usual way.
 class Indirect {
@@ -101,6 +102,8 @@ struct CellInput {
   // uses it for pixels that a time limit leaves without samples. It is set as soon as there are
   // cells, even if `stop` later makes make_integrator() return null.
   std::unique_ptr<Integrator> quick{};
+  // Result: decisions made after the plan, when there are cells.
+  std::vector<PlannedPart> decisions{};
 };
 
 // Input of plan_method() and make_integrator(). radiosity and cells may be null if the method does

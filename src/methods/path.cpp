@@ -7,9 +7,11 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/streams.h"
+#include "gather/gather_walks.h"
 #include "transport/bsdf_at.h"
 #include "transport/look_through_panes.h"
 #include "transport/purposes.h"
+#include "transport/surface_scattering.h"
 #include "transport/two_sides.h"
 
 namespace troffer {
@@ -80,6 +82,7 @@ void PathIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& scratc
                               RadianceBatch& out, Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
   counters.viewing_rays += rays.size();
+  if (options_.cells) out.enable_shared_error();
   for (size_t first = 0; first < rays.size(); first += most_at_a_time) {
     start_walks(rays, first, std::min(first + most_at_a_time, rays.size()), s.wave.walks);
     follow(s, Coherence::coherent, out, counters);
@@ -158,10 +161,63 @@ void PathIntegrator::arrive(Scratch& s, RadianceBatch& out) const {
     if (walks[i].vertex == 0) record_first_hit(walks[i], vertices[i], bsdfs[i], out);
     if (has_two_sides(bsdfs[i])) choose_side(walks[i], vertices[i], bsdfs[i]);
   }
+  if (options_.cells) alive = end_at_cells(s, alive, out);
   if (alive > 0 && is_last(walks[0])) alive = 0;  // recorded as first hits, but not followed
   walks.resize(alive);
   vertices.resize(alive);
   bsdfs.resize(alive);
+}
+
+// Ends the first `alive` walks where they find a cell. Returns the number of those that go on.
+size_t PathIntegrator::end_at_cells(Scratch& s, size_t alive, RadianceBatch& out) const {
+  size_t kept = 0;
+  for (size_t i = 0; i < alive; ++i) {
+    if (ends_at_cell(s.wave.walks[i], s.wave.vertices[i], s.wave.bsdfs[i], out)) continue;
+    if (kept != i) {
+      s.wave.walks[kept] = s.wave.walks[i];
+      s.wave.vertices[kept] = s.wave.vertices[i];
+      s.wave.bsdfs[kept] = s.wave.bsdfs[i];
+    }
+    ++kept;
+  }
+  return kept;
+}
+
+// Adds the light that the matte part of a surface reflects, from a cell there. Where the surface
+// also has gloss, a random number decides between that light and the gloss, which the walk then
+// follows: `bsdf` becomes the gloss alone.
+bool PathIntegrator::ends_at_cell(Walk& walk, const Vertex& v, Bsdf& bsdf,
+                                  RadianceBatch& out) const {
+  // Chance of ending at a surface whose gloss has no known albedo, and its limits elsewhere.
+  constexpr float even = 0.5f, least = 0.1f;
+  if (walk.scatterings == 0) return false;
+  const SurfaceScattering parts(bsdf);
+  if (!parts.has_diffuse) return false;
+  Rgb irradiance;
+  float half_difference = 0;
+  if (!options_.cells->irradiance_at(cell_hit_of(v, parts.diffuse),
+                                     length(v.surface.position - walk.ray.origin), irradiance,
+                                     half_difference))
+    return false;
+  const Rgb diffuse = albedo(parts.diffuse, v.wo.z);
+  float chance = 1;
+  if (parts.has_specular) {
+    const bool is_known = !parts.specular.is_pane && !parts.specular.clear.has_lobe();
+    const float matte = luminance(diffuse),
+                gloss = is_known ? luminance(albedo(parts.specular, v.wo.z)) : matte;
+    chance = matte + gloss > 0 ? std::clamp(matte / (matte + gloss), least, 1 - least) : even;
+    const uint64_t number =
+        hash_of(walk.stream, stream::end_at_cell, uint64_t{walk.sample}, uint64_t{walk.vertex});
+    if (float(number >> 40) * 0x1p-24f >= chance) {
+      walk.throughput *= 1 / (1 - chance);
+      bsdf = parts.specular;
+      return false;
+    }
+  }
+  const Rgb weight = walk.throughput * diffuse * (inv_pi_f / chance);
+  out.indirect[walk.index] += weight * irradiance;
+  out.drawn_error[walk.index] += luminance(weight) * half_difference;
+  return true;
 }
 
 // Next-event estimation at all vertices, then a step from each.

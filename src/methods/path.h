@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "gather/cells.h"
 #include "transport/integrator.h"
 #include "transport/light_tree_direct.h"
 #include "transport/mirror_images.h"
@@ -28,6 +29,9 @@ struct PathOptions {
   // Mirrors in which matte surfaces sample lights as if these were seen directly. Null: only paths
   // that happen to hit a light behind a mirror find it.
   std::shared_ptr<const MirrorImages> images = nullptr;
+  // Cells at which paths end: the first matte reflection after a scattering reads the irradiance
+  // there, if the ray is longer than a few cells. Null: paths end by roulette alone.
+  std::shared_ptr<const Cells> cells = nullptr;
 };
 
 class PathIntegrator final : public Integrator {
@@ -52,6 +56,8 @@ class PathIntegrator final : public Integrator {
 
   void follow(Scratch& scratch, Coherence first, RadianceBatch& out, Counters& counters) const;
   void arrive(Scratch& scratch, RadianceBatch& out) const;
+  size_t end_at_cells(Scratch& scratch, size_t alive, RadianceBatch& out) const;
+  bool ends_at_cell(Walk& walk, const Vertex& vertex, Bsdf& bsdf, RadianceBatch& out) const;
   void shade(Scratch& scratch, RadianceBatch& out, Counters& counters) const;
   void add_images(Scratch& scratch, RadianceBatch& out, Counters& counters) const;
   void add_emission(const Walk& walk, const Vertex& vertex, RadianceBatch& out) const;

@@ -8,8 +8,8 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/streams.h"
-#include "methods/path.h"
 #include "transport/allowed_error.h"
+#include "transport/costs.h"
 #include "transport/purposes.h"
 
 namespace troffer {
@@ -59,9 +59,8 @@ std::string name_of_forecast_ray(const void*, size_t i) {
 }
 
 // Luminance of each path; 0 where it is not finite.
-std::vector<double> luminances(const PreparedScene& scene, const ViewingRays& rays,
+std::vector<double> luminances(const Integrator& paths, const ViewingRays& rays,
                                Counters& counters) {
-  const PathIntegrator paths(scene, {});
   const std::unique_ptr<IntegratorScratch> scratch = paths.make_scratch();
   RadianceBatch out;
   out.reset(rays.size());
@@ -147,12 +146,16 @@ double rays_wanted(const std::vector<Tile>& tiles, double error, double typical,
 
 }  // namespace
 
-PathForecast forecast_paths(const PreparedScene& scene, const PictureView& view, double error,
+double least_cost_of_gathers(const PictureView& view, double error) {
+  return least_of_pixel(error) * double(view.image.width()) * double(view.image.height());
+}
+
+PathForecast forecast_paths(const Integrator& paths, const PictureView& view, double error,
                             int most, uint64_t seed, Counters& counters) {
   Counters own;
   const uint64_t stream = hash_of(seed, stream::path_forecast);
   const ViewingRays rays = sets_of_rays(view, stream);
-  const std::vector<Tile> tiles = tiles_of(stream, luminances(scene, rays, own));
+  const std::vector<Tile> tiles = tiles_of(stream, luminances(paths, rays, own));
   counters += own;
   PathForecast f;
   const double typical = typical_of(tiles);
@@ -164,9 +167,8 @@ PathForecast forecast_paths(const PreparedScene& scene, const PictureView& view,
         std::max(rays_wanted(tiles, error, typical, f.evenness, most), double(least_first));
   }
   const double pixels = double(view.image.width()) * double(view.image.height());
-  const auto traced = double(own.viewing_rays + own.extension_rays + own.shadow_rays);
-  f.rays = traced / double(rays.size()) * f.viewing_rays * pixels;
-  f.rays_for_cells = f.rays - least_of_pixel(error) * pixels - rays_of_search;
+  f.rays = cost_of(own) / double(rays.size()) * f.viewing_rays * pixels;
+  f.rays_for_cells = f.rays - least_cost_of_gathers(view, error) - rays_of_search;
   return f;
 }
 

@@ -25,8 +25,11 @@ struct PathForecast {
 
 // Forecasts the cost of a picture. error: allowed in a pixel (allowed_error()). most: limit of
 // viewing rays per pixel. Adds the rays that it traces to `counters`.
-PathForecast forecast_paths(const PreparedScene& scene, const PictureView& view, double error,
+// paths: the integrator whose viewing rays are tested.
+PathForecast forecast_paths(const Integrator& paths, const PictureView& view, double error,
                             int most, uint64_t seed, Counters& counters);
+// Returns the least cost of a picture by gathers from cells, in rays, without making the cells.
+double least_cost_of_gathers(const PictureView& view, double error);
 
 // Returns how the pixels of a picture by paths are to be sampled.
 PixelSampling sampling_by_paths(const PathForecast& forecast, double error, int most);

@@ -41,8 +41,6 @@ FurtherRays::FurtherRays(const PreparedScene& scene, const ViewingCamera& camera
     options_.error = float(options.error);
     options_.is_everywhere = true;
     options_.most_even = 6;
-    if (options.indirect != Indirect::none)
-      options_.most_effort_divisor = SampleRequest::most_effort_divisor;
     if (options.indirect == Indirect::none)
       options_.least_with_surrogates = options.method.row().refinement * options.spp;
     steps_.surrogates = 1;

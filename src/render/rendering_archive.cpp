@@ -17,7 +17,7 @@ struct TileHeader {
   uint32_t tile, steps;
   Counters counters;
 };
-static_assert(sizeof(TileHeader) == 80 && sizeof(Counters) == 72);
+static_assert(sizeof(TileHeader) == 112 && sizeof(Counters) == 104);
 
 // Head of a message.
 struct StateHeader {

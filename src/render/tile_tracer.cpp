@@ -1,13 +1,14 @@
 #include "render/tile_tracer.h"
 
 #include <algorithm>
-#include <tuple>
+#include <cmath>
 #include <utility>
 
 #include "base/error.h"
 #include "base/random.h"
 #include "base/streams.h"
 #include "transport/allowed_error.h"
+#include "transport/costs.h"
 
 namespace troffer {
 
@@ -41,22 +42,39 @@ Rgb TileTracer::edge_correction(const TileWork& w, size_t ray) const {
                                              w.radiance.known[ray].direct);
 }
 
-// Traces the collected rays, if any.
-void TileTracer::trace(TileWork& w) {
+// Computes the radiance of the collected rays.
+void TileTracer::compute(const FurtherWay& way, TileWork& w) {
   const CheckContext context(&w, w.rays.size(), name_of_ray);
-  if (w.rays.size() == 0) return;
   w.radiance.reset(w.rays.size());
   if (further_.is_refined()) w.radiance.records.assign(w.rays.size(), {});
   if (further_.has_surrogates()) w.radiance.known.assign(w.rays.size(), {});
-  integrator_.radiance(w.rays, *w.scratch, w.radiance, w.counters);
+  if (!way.is_cheaper) {
+    integrator_.radiance(w.rays, *w.scratch, w.radiance, w.counters);
+  } else {
+    if (!w.cheaper) w.cheaper = integrator_.cheaper()->make_scratch();
+    integrator_.cheaper()->radiance(w.rays, *w.cheaper, w.radiance, w.counters);
+    if (further_.has_surrogates()) {
+      w.known.reset(w.rays.size());
+      w.known.known.assign(w.rays.size(), {});
+      integrator_.surrogate_radiance(w.rays, *w.scratch, w.known, w.counters);
+      w.radiance.known.swap(w.known.known);
+    }
+  }
+  if (!further_.has_surrogates()) return;
+  for (size_t i = 0; i < w.rays.size(); ++i) {
+    const Rgb even = edge_correction(w, i);
+    w.radiance.edge_correction.push_back(even);
+    w.radiance.direct[i] += even;
+    w.radiance.known[i].direct += even;
+  }
+}
+
+// Traces the collected rays, if any, into the film.
+void TileTracer::trace(const FurtherWay& way, TileWork& w) {
+  if (w.rays.size() == 0) return;
+  compute(way, w);
   for (size_t i = 0; i < w.rays.size(); ++i) {
     const auto [x, y] = w.pixels[i];
-    if (further_.has_surrogates()) {
-      const Rgb even = edge_correction(w, i);
-      w.radiance.edge_correction.push_back(even);
-      w.radiance.direct[i] += even;
-      w.radiance.known[i].direct += even;
-    }
     const bool is_first = film_.estimate(x, y).samples == 0;
     const float depth = camera_.depth(w.radiance.position[i]);
     if (!film_.add(x, y, w.radiance, i, depth)) ++w.counters.nan_samples;
@@ -67,7 +85,7 @@ void TileTracer::trace(TileWork& w) {
 
 void TileTracer::first_pass(const PixelRect& tile, uint32_t count, TileWork& w) {
   for (const Pixel2& p : pixels_in_order(tile)) add_rays(p, count, w);
-  trace(w);
+  trace({}, w);
 }
 
 void TileTracer::further_pass(const PixelRect& tile, int first, TileWork& w) {
@@ -77,23 +95,93 @@ void TileTracer::further_pass(const PixelRect& tile, int first, TileWork& w) {
     add_rays(p, uint32_t(count), w);
     w.rays.neighbours.resize(w.rays.size(), further_.records()->around(p.x, p.y));
   }
-  trace(w);
+  trace({}, w);
+}
+
+// Returns pixels that stand for the further rays of a tile: each for an equal number of them. Empty
+// if the tile wants too few for a test to repay.
+std::vector<Pixel2> TileTracer::pixels_to_test(const PixelRect& tile) const {
+  // With at least this many, the tests take an eighth of the tile's further rays or less.
+  constexpr double least = 8 * test_pixels * test_rays_of_pixel * further_ways.size();
+  std::vector<Pixel2> pixels;
+  const auto wanted = [&](const Pixel2& p) {
+    return double(further_.at(p.x, p.y).samples) - further_.first_spp();
+  };
+  double sum = 0;
+  for (const Pixel2& p : pixels_in_order(tile)) sum += wanted(p);
+  if (sum < least) return pixels;
+  double so_far = 0;
+  for (const Pixel2& p : pixels_in_order(tile)) {
+    so_far += wanted(p);
+    while (pixels.size() < test_pixels &&
+           so_far >= (double(pixels.size()) + 0.5) / test_pixels * sum)
+      pixels.push_back(p);
+  }
+  return pixels;
+}
+
+TestPixel TileTracer::test_pixel(const Pixel2& p, const TileWork& w) const {
+  const PixelEstimate e = film_.estimate(p.x, p.y);
+  const bool has_known = further_.at(p.x, p.y).surrogates > 0;
+  return {has_known ? e.rest : e.luminance,
+          sqr(has_known ? e.error_of_rest : e.standard_error) * e.samples,
+          allowed_error(options_.error, e.luminance,
+                        std::max(double(w.rays.request.typical_luminance), 1e-30))};
+}
+
+// Tests all ways at a few pixels of a tile that wants many further rays.
+FurtherChoice TileTracer::choose_way(const PixelRect& tile, TileWork& w) {
+  if (integrator_.cheaper() == nullptr) return {};
+  const std::vector<Pixel2> pixels = pixels_to_test(tile);
+  if (pixels.empty()) return {};
+  const uint64_t seed = hash_of(options_.seed, stream::further_test);
+  std::vector<TestPixel> before;
+  for (const Pixel2& p : pixels) before.push_back(test_pixel(p, w));
+  std::vector<TestedWay> tested;
+  for (const FurtherWay& way : further_ways) {
+    w.rays.clear();
+    w.pixels.clear();
+    for (const Pixel2& p : pixels) {
+      add_viewing_rays(camera_, p, uint32_t(further_.first_spp()), test_rays_of_pixel, seed,
+                       w.rays);
+      w.pixels.resize(w.rays.size(), p);
+    }
+    w.rays.request.effort_divisor = way.effort_divisor;
+    const double cost = cost_of(w.counters);
+    compute(way, w);
+    TestedWay& t = tested.emplace_back(TestedWay{way, {}, cost_of(w.counters) - cost});
+    for (size_t i = 0; i < w.rays.size(); ++i) {
+      const Rgb all = w.radiance.direct[i] + w.radiance.indirect[i];
+      double value = is_finite(all) ? double(luminance(all)) : 0;
+      if (further_.at(w.pixels[i].x, w.pixels[i].y).surrogates > 0)
+        value -= double(luminance(w.radiance.known[i].direct + w.radiance.known[i].indirect));
+      t.luminances.push_back(value);
+    }
+  }
+  w.rays.clear();
+  w.pixels.clear();
+  w.rays.request.effort_divisor = 1;
+  return choose_further_way(before, tested);
 }
 
 bool TileTracer::further_rays(const PixelRect& tile, TileWork& w) {
+  const FurtherChoice choice = choose_way(tile, w);
   const auto send = [&] {
-    trace(w);
+    trace(choice.way, w);
     w.rays.clear();
     w.pixels.clear();
   };
-  const auto request_of = [&](const Pixel2& p) {
-    const WantedPixel& wanted = further_.at(p.x, p.y);
-    return std::pair(wanted.effort_divisor, further_.error_scale(wanted.samples));
+  const auto wanted = [&](const Pixel2& p) {
+    constexpr double most = 1 << 16;
+    const double first = further_.first_spp(), planned = further_.at(p.x, p.y).samples;
+    return uint32_t(std::min(first + std::ceil((planned - first) * choice.times), most));
   };
   std::vector<Pixel2> pixels = pixels_in_order(tile);
-  std::stable_sort(pixels.begin(), pixels.end(),
-                   [&](const Pixel2& a, const Pixel2& b) { return request_of(a) < request_of(b); });
+  std::stable_sort(pixels.begin(), pixels.end(), [&](const Pixel2& a, const Pixel2& b) {
+    return further_.error_scale(wanted(a)) < further_.error_scale(wanted(b));
+  });
   SampleRequest& request = w.rays.request;
+  request.effort_divisor = choice.way.effort_divisor;
   const auto end = [&](bool is_whole) {
     send();
     request.error_scale = 1;
@@ -101,11 +189,11 @@ bool TileTracer::further_rays(const PixelRect& tile, TileWork& w) {
     return is_whole;
   };
   for (const Pixel2& p : pixels) {
-    if (request_of(p) != std::pair(request.effort_divisor, request.error_scale)) send();
-    std::tie(request.effort_divisor, request.error_scale) = request_of(p);
-    const uint32_t wanted = further_.at(p.x, p.y).samples;
-    film_.expect_samples(p.x, p.y, wanted);
-    int left = int(wanted) - further_.first_spp();
+    const float scale = further_.error_scale(wanted(p));
+    if (scale != request.error_scale) send();
+    request.error_scale = scale;
+    film_.expect_samples(p.x, p.y, wanted(p));
+    int left = int(wanted(p)) - further_.first_spp();
     while (left > 0) {
       if (stop_.load(std::memory_order_relaxed)) return end(false);
       const int count = std::min(left, int(rays_at_a_time - w.rays.size()));

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "render/camera.h"
 #include "render/film.h"
+#include "render/further_choice.h"
 #include "render/further_rays.h"
 #include "render/tile.h"
 #include "transport/integrator.h"
@@ -19,9 +20,10 @@ namespace troffer {
 struct TileWork {
   ViewingRays rays;
   RadianceBatch radiance;
-  std::vector<Pixel2> pixels;  // per ray
-  std::unique_ptr<IntegratorScratch> scratch;
-  Counters counters;  // of the current tile
+  std::vector<Pixel2> pixels;                           // per ray
+  std::unique_ptr<IntegratorScratch> scratch, cheaper;  // cheaper: of Integrator::cheaper()
+  RadianceBatch known;                                  // surrogate samples beside `radiance`
+  Counters counters;                                    // of the current tile
 };
 
 // Returns the name of ray i of the TileWork at `work`, for messages of failed checks.
@@ -56,7 +58,11 @@ class TileTracer {
 
  private:
   void add_rays(const Pixel2& p, uint32_t count, TileWork& w) const;
-  void trace(TileWork& w);
+  void compute(const FurtherWay& way, TileWork& w);
+  void trace(const FurtherWay& way, TileWork& w);
+  std::vector<Pixel2> pixels_to_test(const PixelRect& tile) const;
+  TestPixel test_pixel(const Pixel2& p, const TileWork& w) const;
+  FurtherChoice choose_way(const PixelRect& tile, TileWork& w);
   Rgb edge_correction(const TileWork& w, size_t ray) const;
 
   const ViewingCamera& camera_;

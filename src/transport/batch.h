@@ -166,6 +166,9 @@ struct Counters {
   uint64_t nan_samples = 0;
   // (hit, source) pairs by the way they were answered
   uint64_t lit_certified = 0, dark_certified = 0, masked = 0, mixed = 0;
+  // Work of certificates: pairs of cluster and source, masks, facets in masks, and points at which
+  // an integrand was evaluated.
+  uint64_t clusters = 0, masks = 0, mask_facets = 0, points = 0;
 
   Counters& operator+=(const Counters& o) {
     viewing_rays += o.viewing_rays;
@@ -177,6 +180,10 @@ struct Counters {
     dark_certified += o.dark_certified;
     masked += o.masked;
     mixed += o.mixed;
+    clusters += o.clusters;
+    masks += o.masks;
+    mask_facets += o.mask_facets;
+    points += o.points;
     return *this;
   }
 };

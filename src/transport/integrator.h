@@ -38,6 +38,9 @@ class Integrator {
   virtual void radiance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,
                         Counters& counters) const = 0;
   virtual PixelSampling sampling() const { return {}; }
+  // Another integrator of the same light whose viewing rays are cheaper and noisier, for further
+  // viewing rays of a pixel; null if there is none.
+  virtual const Integrator* cheaper() const { return nullptr; }
   // True if surrogate_radiance() is implemented (KnownRadiance).
   virtual bool has_surrogates() const { return false; }
   // Adds known radiance to out.known, which has size rays.size(). Other members of

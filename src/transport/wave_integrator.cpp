@@ -44,11 +44,13 @@ struct WaveIntegrator::Scratch final : IntegratorScratch {
 };
 
 WaveIntegrator::WaveIntegrator(const PreparedScene& scene, std::unique_ptr<DirectLight> direct,
-                               std::unique_ptr<IndirectLight> indirect, bool has_surrogates)
+                               std::unique_ptr<IndirectLight> indirect, bool has_surrogates,
+                               std::unique_ptr<const Integrator> cheaper)
     : scene_(scene),
       direct_(std::move(direct)),
       indirect_(std::move(indirect)),
-      has_surrogates_(has_surrogates) {
+      has_surrogates_(has_surrogates),
+      cheaper_(std::move(cheaper)) {
   TROFFER_CHECK(!indirect_ || direct_->walked_part() == WalkedPart::specular);
 }
 

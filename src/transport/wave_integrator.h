@@ -26,13 +26,15 @@ class WaveIntegrator final : public Integrator {
  public:
   // indirect: may be null; otherwise direct->walked_part() must be `specular`. has_surrogates
   // applies without indirect light: the emission that viewing rays hit then serves refinement as
-  // known radiance.
+  // known radiance. cheaper: Integrator::cheaper(); may be null.
   WaveIntegrator(const PreparedScene& scene, std::unique_ptr<DirectLight> direct,
-                 std::unique_ptr<IndirectLight> indirect, bool has_surrogates = false);
+                 std::unique_ptr<IndirectLight> indirect, bool has_surrogates = false,
+                 std::unique_ptr<const Integrator> cheaper = nullptr);
 
   std::unique_ptr<IntegratorScratch> make_scratch() const override;
   void radiance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,
                 Counters& counters) const override;
+  const Integrator* cheaper() const override { return cheaper_.get(); }
   bool has_surrogates() const override {
     return indirect_ ? indirect_->is_known() : has_surrogates_;
   }
@@ -61,6 +63,7 @@ class WaveIntegrator final : public Integrator {
   std::unique_ptr<DirectLight> direct_;
   std::unique_ptr<IndirectLight> indirect_;
   bool has_surrogates_;
+  std::unique_ptr<const Integrator> cheaper_;
 };
 
 }  // namespace troffer

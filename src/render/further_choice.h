@@ -1,0 +1,52 @@
+// Chooses how the further viewing rays of a tile are computed: by the picture's integrator, at one
+// of several effort divisors, or by its cheaper integrator (Integrator::cheaper). All have the same
+// mean. A few test rays of each measure the variance of a ray and its cost; the choice has the
+// least product of both, which is the cost of a given error. Test rays enter no result, so the
+// choice leaves the mean of every pixel unbiased.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace troffer {
+
+// A way of computing further viewing rays.
+struct FurtherWay {
+  uint32_t effort_divisor = 1;  // SampleRequest::effort_divisor
+  bool is_cheaper = false;      // by Integrator::cheaper
+};
+constexpr std::array<FurtherWay, 4> further_ways{{{1, false}, {4, false}, {16, false}, {1, true}}};
+
+// Test rays of one tile.
+constexpr size_t test_pixels = 4;
+constexpr uint32_t test_rays_of_pixel = 8;
+
+struct FurtherChoice {
+  FurtherWay way;
+  double times = 1;  // further rays, relative to the number that first rays would need
+};
+
+// Luminances of the test rays of one way, pixel by pixel, and their cost (costs.h).
+struct TestedWay {
+  FurtherWay way;
+  std::vector<double> luminances;
+  double cost = 0;
+};
+
+// A test pixel, as the first pass left it. Luminance and variance exclude known radiance if the
+// luminances of test rays do.
+struct TestPixel {
+  double luminance = 0;
+  double variance = 0;  // of one first ray
+  double allowed = 1;   // error of the pixel
+};
+
+// Returns the way of least cost for a given error. Light that the first rays have seen and the test
+// rays have not is taken to come in rare, bright rays: of n test rays that all missed it, it has a
+// variance of at least n / 3 times its square (the 95 % limit of its chance is 3 / n).
+FurtherChoice choose_further_way(std::span<const TestPixel> pixels,
+                                 std::span<const TestedWay> tested);
+
+}  // namespace troffer

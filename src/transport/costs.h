@@ -1,0 +1,28 @@
+// Costs of work in one unit: the time of one traced ray with the light that it brings. Choices
+// between ways of computing the same light compare such costs; they never measure time, so they are
+// the same on every machine. `bench/costs` measures the costs again.
+#pragma once
+
+#include "transport/batch.h"
+
+namespace troffer {
+
+// Each of these takes this share of the time of a ray.
+constexpr double cost_of_mask = 0.3, cost_of_mask_facet = 1.0 / 12, cost_of_point = 0.3;
+// A pair of a cluster or a hit with a source.
+constexpr double cost_of_cluster = 12, cost_of_pair = 0.15;
+
+// Returns the cost of counted rays and masks, in rays.
+inline double cost_of_rays_and_masks(const Counters& n) {
+  return double(n.viewing_rays + n.surrogates + n.extension_rays + n.shadow_rays) +
+         cost_of_mask * double(n.masks) + cost_of_mask_facet * double(n.mask_facets) +
+         cost_of_point * double(n.points);
+}
+// Returns the cost of all counted work, in rays. Sources proved dark for whole clusters cost
+// nothing per hit.
+inline double cost_of(const Counters& n) {
+  return cost_of_rays_and_masks(n) + cost_of_cluster * double(n.clusters) +
+         cost_of_pair * double(n.lit_certified + n.masked + n.mixed);
+}
+
+}  // namespace troffer
