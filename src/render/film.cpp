@@ -336,4 +336,22 @@ std::vector<Layer> Film::layers() const {
   return layers;
 }
 
+double picture_error(const Film& film, const PixelRect& window) {
+  constexpr double bright = 4;  // times the mean: what a display or a tone map shows as white
+  const double pixels = double(window.width()) * window.height();
+  const auto sum_of = [&](const auto& value) {
+    double sum = 0;
+    for (int y = window.y0; y < window.y1; ++y)
+      for (int x = window.x0; x < window.x1; ++x) sum += value(x, y);
+    return sum;
+  };
+  const double mean = sum_of([&](int x, int y) { return film.estimate(x, y).luminance; }) / pixels;
+  if (!(mean > 0)) return 0;
+  const double squares = sum_of([&](int x, int y) {
+    const double l = film.estimate(x, y).luminance;
+    return sqr(film.estimated_error(x, y) * std::min(1.0, bright * mean / std::max(l, 1e-30)));
+  });
+  return std::sqrt(squares / pixels) / mean;
+}
+
 }  // namespace troffer

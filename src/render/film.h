@@ -163,4 +163,9 @@ class Film {
   std::vector<Known> known_;          // empty unless expect_surrogates() was called
 };
 
+// Returns the estimated error of a picture: root mean square of its pixels' errors over its mean
+// luminance. The error of a pixel brighter than four times the mean counts relative to its own
+// luminance, as if it had four times the mean.
+double picture_error(const Film& film, const PixelRect& window);
+
 }  // namespace troffer

@@ -34,17 +34,17 @@ double variance_of(std::span<const TestPixel> pixels, const TestedWay& tested) {
 FurtherChoice choose_further_way(std::span<const TestPixel> pixels,
                                  std::span<const TestedWay> tested) {
   TROFFER_CHECK(!pixels.empty() && !tested.empty());
-  constexpr double least_times = 0.25, most_times = 64;
+  constexpr double least_times = 0.25;  // a few test rays cannot show less
   double of_first = 0;
   for (const TestPixel& p : pixels) of_first += p.variance / sqr(p.allowed);
   FurtherChoice best{tested.front().way, 1};
   if (!(of_first > 0)) return best;
   double least = 0;
   for (const TestedWay& t : tested) {
-    const double times = std::clamp(variance_of(pixels, t) / of_first, least_times, most_times);
+    const double times = std::max(variance_of(pixels, t) / of_first, least_times);
     if (least > 0 && times * t.cost >= least) continue;
     least = times * t.cost;
-    best = {t.way, times};
+    best = {t.way, times, true};
   }
   return best;
 }

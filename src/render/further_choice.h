@@ -1,8 +1,8 @@
-// Chooses how the further viewing rays of a tile are computed: by the picture's integrator, at one
-// of several effort divisors, or by its cheaper integrator (Integrator::cheaper). All have the same
-// mean. A few test rays of each measure the variance of a ray and its cost; the choice has the
-// least product of both, which is the cost of a given error. Test rays enter no result, so the
-// choice leaves the mean of every pixel unbiased.
+// Chooses how the further viewing rays of a tile are computed: like the first ones, by the
+// picture's integrator at one of several effort divisors, or by its cheaper integrator
+// (Integrator::cheaper). All have the same mean. A few test rays of each measure the variance of a
+// ray and its cost; the choice has the least product of both, which is the cost of a given error.
+// Test rays enter no result, so the choice leaves the mean of every pixel unbiased.
 #pragma once
 
 #include <array>
@@ -16,8 +16,10 @@ namespace troffer {
 struct FurtherWay {
   uint32_t effort_divisor = 1;  // SampleRequest::effort_divisor
   bool is_cheaper = false;      // by Integrator::cheaper
+  bool is_like_first = false;   // as carefully as the first rays of a pixel
 };
-constexpr std::array<FurtherWay, 4> further_ways{{{1, false}, {4, false}, {16, false}, {1, true}}};
+constexpr std::array<FurtherWay, 5> further_ways{
+    {{1, false, true}, {1}, {4}, {16}, {.is_cheaper = true}}};
 
 // Test rays of one tile.
 constexpr size_t test_pixels = 4;
@@ -26,6 +28,7 @@ constexpr uint32_t test_rays_of_pixel = 8;
 struct FurtherChoice {
   FurtherWay way;
   double times = 1;  // further rays, relative to the number that first rays would need
+  bool is_tested = false;
 };
 
 // Luminances of the test rays of one way, pixel by pixel, and their cost (costs.h).

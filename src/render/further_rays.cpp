@@ -1,7 +1,6 @@
 #include "render/further_rays.h"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -49,17 +48,15 @@ FurtherRays::FurtherRays(const PreparedScene& scene, const ViewingCamera& camera
 }
 
 void FurtherRays::wait_for_leader() {
-  wanted_.assign(pixels(), {uint32_t(first_spp_), 0, 1});
+  wanted_.assign(pixels(), {uint32_t(first_spp_), 0});
 }
 
 void FurtherRays::decide_row(const RefinementView& view, int y) {
   for (int x = plan_.inner.x0; x < plan_.inner.x1; ++x) {
     WantedPixel& w = wanted_[records_->index(x, y)];
     if (has_surrogates_) w.surrogates = uint32_t(surrogates_wanted(view, x, y, options_));
-    const WantedSamples samples =
-        samples_wanted(view, x, y, w.surrogates > 0, first_spp_, most_.in_pixel, options_);
-    w.samples = uint32_t(samples.count);
-    w.effort_divisor = samples.effort_divisor;
+    w.samples = uint32_t(
+        samples_wanted(view, x, y, w.surrogates > 0, first_spp_, most_.in_pixel, options_));
   }
 }
 
@@ -77,7 +74,7 @@ void FurtherRays::decide(const Film& film, double typical) {
   });
   constexpr int surrogates_in_mean = 4096;
   for (const PixelRect& tile : plan_.tiles) {
-    if (most_.in_mean < most_.in_pixel) limit_samples(tile);
+    if (most_.in_mean < most_.in_pixel) limit_mean(tile, most_.in_mean, &WantedPixel::samples);
     if (has_surrogates_) limit_mean(tile, surrogates_in_mean, &WantedPixel::surrogates);
   }
 }
@@ -98,24 +95,10 @@ void FurtherRays::limit_mean(const PixelRect& tile, int mean, uint32_t WantedPix
   }
 }
 
-// Limits viewing rays. Pixels that get fewer rays than wanted get a smaller effort divisor.
-void FurtherRays::limit_samples(const PixelRect& tile) {
-  const std::vector<Pixel2> pixels = pixels_in_order(tile);
-  std::vector<uint32_t> asked;
-  for (const Pixel2& p : pixels) asked.push_back(at(p.x, p.y).samples);
-  limit_mean(tile, most_.in_mean, &WantedPixel::samples);
-  for (size_t k = 0; k < pixels.size(); ++k) {
-    WantedPixel& w = wanted_[records_->index(pixels[k].x, pixels[k].y)];
-    for (uint32_t n = w.samples; n < asked[k] && w.effort_divisor > 1; n *= 2)
-      w.effort_divisor /= 2;
-  }
-}
-
 bool FurtherRays::restore(std::vector<WantedPixel> wanted) {
   for (const WantedPixel& w : wanted)
     if (w.samples < uint32_t(first_spp_) || w.samples > uint32_t(most_.in_pixel) ||
-        w.surrogates > (has_surrogates_ ? uint32_t(most_surrogates) : 0) ||
-        !std::has_single_bit(w.effort_divisor) || w.effort_divisor > options_.most_effort_divisor)
+        w.surrogates > (has_surrogates_ ? uint32_t(most_surrogates) : 0))
       return false;
   wanted_ = std::move(wanted);
   return true;

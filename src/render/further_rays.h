@@ -18,10 +18,10 @@ namespace troffer {
 // for ray packets, short enough for the second-level cache.
 constexpr int samples_per_pass = 4;
 
-// Plan of one pixel, as in checkpoints and messages: viewing rays in total, surrogate samples, and
-// the effort divisor of viewing rays after the first pass (SampleRequest::effort_divisor).
+// Plan of one pixel, as in checkpoints and messages: viewing rays in total if all are like the
+// first ones (FurtherChoice), and surrogate samples.
 struct WantedPixel {
-  uint32_t samples, surrogates, effort_divisor;
+  uint32_t samples, surrogates;
 };
 
 // Numbers of a tile's steps (tile_book.h) by kind, in this order: passes over the whole picture,
@@ -81,7 +81,6 @@ class FurtherRays {
  private:
   void decide_row(const RefinementView& view, int y);
   void limit_mean(const PixelRect& tile, int mean, uint32_t WantedPixel::*number);
-  void limit_samples(const PixelRect& tile);
 
   const PreparedScene& scene_;
   const ViewingCamera& camera_;

@@ -296,28 +296,14 @@ double variance_of_sub_pixel_feature(double mean) {
   return sqr(mean) / 18;
 }
 
-// Exponent p of BrightPixelError for edges, where most further rays go.
-constexpr double of_usual_of_further = 0.6;
-
-// Returns the allowed error of a pixel whose surroundings have this mean luminance.
-double allowed_error(double mean, double typical, const RefinementOptions& options,
-                     const BrightPixelError& of_bright) {
-  return options.is_everywhere
-             ? troffer::allowed_error(double(options.error), mean, typical, of_bright)
-             : double(options.error) * std::max(mean, typical);
-}
-
 }  // namespace
 
 int surrogates_wanted(const RefinementView& v, int x, int y, const RefinementOptions& options) {
-  // Surrogate rays are so cheap that bright pixels may get the full number by Neyman's rule.
-  constexpr double largest_reduction = 100;
   const auto of = [&](int px, int py) { return known_of(v.looks.at(px, py).known); };
   const bool is_light_known = has_known_light(v, x, y);
   const Surroundings s = look_around(v, x, y, !is_light_known, options, of);
   const bool has_edge = v.edges.has_surface_edge(x, y), has_light = v.edges.has_light_edge(x, y);
-  const double allowed =
-      allowed_error(s.mean, v.typical, options, {largest_reduction, of_usual_of_further});
+  const double allowed = allowed_error(double(options.error), s.mean, v.typical);
   const double clutter = variance_amid_clutter(v, x, y, s.slope_variance, sqr(allowed), of);
   if (!has_edge && !has_light && !s.has_contrast && !s.has_sub_pixel_features && clutter <= 0 &&
       s.apart.variance <= sqr(allowed))
@@ -336,10 +322,9 @@ int surrogates_wanted(const RefinementView& v, int x, int y, const RefinementOpt
   return count;
 }
 
-WantedSamples samples_wanted(const RefinementView& v, int x, int y, bool has_surrogates, int first,
-                             int most, const RefinementOptions& options) {
-  if (v.edges.has_unknown_light_edge(x, y) && !has_surrogates && !options.is_noise)
-    return {most, 1};
+int samples_wanted(const RefinementView& v, int x, int y, bool has_surrogates, int first, int most,
+                   const RefinementOptions& options) {
+  if (v.edges.has_unknown_light_edge(x, y) && !has_surrogates && !options.is_noise) return most;
   const auto of = [&](int px, int py) -> Varying {
     const PixelEstimate& e = v.looks.at(px, py).estimate;
     if (has_surrogates) return {e.rest, sqr(e.error_of_rest) * e.samples, e.independent_variance};
@@ -349,7 +334,7 @@ WantedSamples samples_wanted(const RefinementView& v, int x, int y, bool has_sur
       look_around(v, x, y, has_surrogates || !has_known_light(v, x, y), options, of);
   const bool has_edge = v.edges.has_surface_edge(x, y);
   const bool is_uneven = has_edge || s.has_contrast || s.has_sub_pixel_features;
-  if (!is_uneven && !options.is_everywhere) return {first, 1};
+  if (!is_uneven && !options.is_everywhere) return first;
   Varying neighbour = is_uneven ? s.largest : s.usual;
   if (has_surrogates && s.apart.variance > neighbour.variance) neighbour = s.apart;
   double variance = neighbour.variance;
@@ -359,29 +344,18 @@ WantedSamples samples_wanted(const RefinementView& v, int x, int y, bool has_sur
     variance = std::max(
         {variance, sqr(s.high - s.low) / 4, variance_along_edge(v, x, y, of),
          v.edges.has_sub_pixel_feature(x, y) ? variance_of_sub_pixel_feature(s.mean) : 0.0});
-  // Pixels far brighter than usual, such as edges of sunlight, are few but dominate the error of
-  // the picture.
-  constexpr double largest_reduction = 16;
-  const double allowed =
-      allowed_error(s.mean, v.typical, options,
-                    options.is_noise ? BrightPixelError{}
-                                     : BrightPixelError{largest_reduction, of_usual_of_further});
+  const double allowed = allowed_error(double(options.error), s.mean, v.typical);
   // Stratification does not help with sub-pixel features.
   SampleSpread spread;
   spread.chance = options.is_noise ? variance : std::min(variance, neighbour.independent);
   (s.has_sub_pixel_features ? spread.thin : spread.placed) = variance - spread.chance;
   if (!options.is_noise)
     spread.clutter = variance_amid_clutter(v, x, y, s.slope_variance, sqr(allowed), of);
-  const SampleNeed need =
-      least_work(spread, s.mean, allowed,
-                 {double(first), double(most), double(options.most_even), options.evenness,
-                  options.is_noise ? 1 : options.most_effort_divisor});
-  double wanted = need.count;
+  double wanted = samples_for(spread, allowed, double(options.most_even), options.evenness);
   // A slope leaves a variance of n^-3 with n stratified samples.
   if (!options.is_noise) wanted = std::max(wanted, std::cbrt(s.slope_variance / sqr(allowed)));
   if (has_surrogates) wanted = std::max(wanted, double(options.least_with_surrogates));
-  return {wanted < double(most) ? std::clamp(int(std::ceil(wanted)), first, most) : most,
-          need.effort_divisor};
+  return wanted < double(most) ? std::clamp(int(std::ceil(wanted)), first, most) : most;
 }
 
 }  // namespace troffer

@@ -38,7 +38,6 @@ struct RefinementOptions {
   // Above most_even² rays, the count is proportional to the pixel's standard deviation instead of
   // its variance. This minimizes the picture's error for a given number of rays. 0: never.
   float most_even = 0;
-  uint32_t most_effort_divisor = 1;  // SampleRequest::most_effort_divisor
   // Least number of rays of pixels with surrogate samples. If known radiance has emission but no
   // reflected light, surrogates do not show sub-pixel features that are only lit.
   int least_with_surrogates = 0;
@@ -100,14 +99,9 @@ struct RefinementView {
 constexpr int most_surrogates = 16'384;
 int surrogates_wanted(const RefinementView& view, int x, int y, const RefinementOptions& options);
 
-struct WantedSamples {
-  int count = 0;
-  uint32_t effort_divisor = 1;  // effort divisor of the samples after the first pass
-};
-
 // Returns the number of viewing rays that a pixel should have in total, from `first`, which it has,
 // to `most`. has_surrogates: it will have surrogate samples.
-WantedSamples samples_wanted(const RefinementView& view, int x, int y, bool has_surrogates,
-                             int first, int most, const RefinementOptions& options);
+int samples_wanted(const RefinementView& view, int x, int y, bool has_surrogates, int first,
+                   int most, const RefinementOptions& options);
 
 }  // namespace troffer

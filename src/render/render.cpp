@@ -126,19 +126,6 @@ class Picture {
   double missing_light_ = 0;  // share of reflected light that cells cut short do not have
 };
 
-// Returns the estimated error of the picture, relative to its mean, like
-// Rendering::estimated_error().
-double estimated_error(const Film& film, const PixelRect& window) {
-  double squares = 0, sum = 0;
-  for (int y = window.y0; y < window.y1; ++y)
-    for (int x = window.x0; x < window.x1; ++x) {
-      squares += sqr(film.estimated_error(x, y));
-      sum += film.estimate(x, y).luminance;
-    }
-  const double pixels = double(window.width()) * window.height();
-  return sum > 0 ? std::sqrt(squares / pixels) * pixels / sum : 0;
-}
-
 // Reserves the time to fill all pixels.
 void Picture::keep_time_for_gaps() {
   seconds_per_gap_ = filler_->seconds_per_pixel(plan_.window);
@@ -167,7 +154,7 @@ RenderResult Picture::make() {
     keep_beginning();
     Film film(plan_.region, options_.aovs, scene_.scene.origin);
     finish(film, result);
-    result.statistics.estimated_error = std::hypot(estimated_error(film, window), missing_light_);
+    result.statistics.estimated_error = std::hypot(picture_error(film, window), missing_light_);
     result.layers = film.layers();
     for (Layer& l : result.layers) l.image = part_of(l.image, plan_.region, window);
     show_preview_in_gaps(film, result);

@@ -163,12 +163,7 @@ ViewingErrors Rendering::viewing_errors() const {
 }
 
 double Rendering::estimated_error() const {
-  const PixelRect& w = plan_.window;
-  double sum = 0;
-  for (int y = w.y0; y < w.y1; ++y)
-    for (int x = w.x0; x < w.x1; ++x) sum += sqr(film_.estimated_error(x, y));
-  const double mean = mean_luminance(w), pixels = double(w.width()) * w.height();
-  return mean > 0 ? std::sqrt(sum / pixels) / mean : 0;
+  return picture_error(film_, plan_.window);
 }
 
 double Rendering::share_done() const {

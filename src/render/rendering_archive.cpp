@@ -95,7 +95,8 @@ bool RenderingArchive::is_as_expected(uint32_t steps, int x, int y) const {
     const uint32_t more = steps - all.first;
     if (further_.are_at_once()) {
       surrogates = wanted.surrogates;
-      if (more > all.surrogates) samples = wanted.samples;
+      // FurtherChoice changes the planned number.
+      if (more > all.surrogates) samples = std::max(film_.estimate(x, y).samples, first);
     } else {
       samples = std::min(wanted.samples, first + more * samples_per_pass);
     }

@@ -36,6 +36,17 @@ void TileTracer::add_rays(const Pixel2& p, uint32_t count, TileWork& w) const {
   w.pixels.resize(w.rays.size(), p);
 }
 
+// Renumbers further rays, so that integrators treat them like first ones: sample numbers begin
+// again after each block of first ones, with another random stream. Their places in the pixel stay.
+void TileTracer::number_like_first(ViewingRays& rays) const {
+  const auto first = uint32_t(further_.first_spp());
+  for (size_t i = 0; i < rays.size(); ++i) {
+    rays.streams[i] =
+        hash_combine(rays.streams[i], stream::further_like_first + rays.samples[i] / first);
+    rays.samples[i] %= first;
+  }
+}
+
 // Returns the correction of LightOutlines for a ray.
 Rgb TileTracer::edge_correction(const TileWork& w, size_t ray) const {
   return further_.outlines().edge_correction(w.pixels[ray].x, w.pixels[ray].y, w.rays.places[ray],
@@ -45,6 +56,7 @@ Rgb TileTracer::edge_correction(const TileWork& w, size_t ray) const {
 // Computes the radiance of the collected rays.
 void TileTracer::compute(const FurtherWay& way, TileWork& w) {
   const CheckContext context(&w, w.rays.size(), name_of_ray);
+  if (way.is_like_first) number_like_first(w.rays);
   w.radiance.reset(w.rays.size());
   if (further_.is_refined()) w.radiance.records.assign(w.rays.size(), {});
   if (further_.has_surrogates()) w.radiance.known.assign(w.rays.size(), {});
@@ -131,14 +143,15 @@ TestPixel TileTracer::test_pixel(const Pixel2& p, const TileWork& w) const {
 
 // Tests all ways at a few pixels of a tile that wants many further rays.
 FurtherChoice TileTracer::choose_way(const PixelRect& tile, TileWork& w) {
-  if (integrator_.cheaper() == nullptr) return {};
+  if (!further_.has_surrogates()) return {};
   const std::vector<Pixel2> pixels = pixels_to_test(tile);
-  if (pixels.empty()) return {};
+  if (pixels.empty()) return {further_ways.front(), 1};
   const uint64_t seed = hash_of(options_.seed, stream::further_test);
   std::vector<TestPixel> before;
   for (const Pixel2& p : pixels) before.push_back(test_pixel(p, w));
   std::vector<TestedWay> tested;
   for (const FurtherWay& way : further_ways) {
+    if (way.is_cheaper && integrator_.cheaper() == nullptr) continue;
     w.rays.clear();
     w.pixels.clear();
     for (const Pixel2& p : pixels) {
@@ -164,6 +177,13 @@ FurtherChoice TileTracer::choose_way(const PixelRect& tile, TileWork& w) {
   return choose_further_way(before, tested);
 }
 
+// Returns the mean number of further rays of these pixels.
+double TileTracer::shared_rays(const std::vector<Pixel2>& pixels) const {
+  double sum = 0;
+  for (const Pixel2& p : pixels) sum += further_.at(p.x, p.y).samples - further_.first_spp();
+  return sum / double(pixels.size());
+}
+
 bool TileTracer::further_rays(const PixelRect& tile, TileWork& w) {
   const FurtherChoice choice = choose_way(tile, w);
   const auto send = [&] {
@@ -171,12 +191,14 @@ bool TileTracer::further_rays(const PixelRect& tile, TileWork& w) {
     w.rays.clear();
     w.pixels.clear();
   };
+  std::vector<Pixel2> pixels = pixels_in_order(tile);
+  const double shared = choice.is_tested ? shared_rays(pixels) : 0;
   const auto wanted = [&](const Pixel2& p) {
     constexpr double most = 1 << 16;
-    const double first = further_.first_spp(), planned = further_.at(p.x, p.y).samples;
-    return uint32_t(std::min(first + std::ceil((planned - first) * choice.times), most));
+    const double first = further_.first_spp(), own = further_.at(p.x, p.y).samples - first,
+                 planned = choice.is_tested ? 0.5 * (own + shared) : own;
+    return uint32_t(std::min(first + std::ceil(planned * choice.times), most));
   };
-  std::vector<Pixel2> pixels = pixels_in_order(tile);
   std::stable_sort(pixels.begin(), pixels.end(), [&](const Pixel2& a, const Pixel2& b) {
     return further_.error_scale(wanted(a)) < further_.error_scale(wanted(b));
   });
