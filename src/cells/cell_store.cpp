@@ -10,7 +10,7 @@ namespace troffer {
 namespace {
 
 constexpr OwnFile cell_file{{'t', 'r', 'o', 'f', 'f', 'C', 'e', 'l'}, 7, "cell file"};
-constexpr uint32_t most_rays = 1 << 16;  // of one part of a row
+constexpr uint32_t most_rays = 1 << 16;  // largest number for one part of a row
 constexpr uint32_t divided_flag = 1, halved_flag = 2;
 
 struct Header {
@@ -20,7 +20,7 @@ struct Header {
   uint64_t scene_key;
   double direct_error;
   uint64_t cells, hits, slots, parts, entries;
-  uint64_t hash;  // of the body, and of the header with 0 here
+  uint64_t hash;  // hash of the body, and of the header with 0 here
 };
 static_assert(sizeof(Header) == 80);
 

@@ -276,6 +276,7 @@ void Picture::render(const Preparation* preparation, RenderResult& result) {
       });
   RenderStatistics& statistics = result.statistics;
   statistics.cells = cells.statistics;
+  statistics.preparation = cells.counters;
   if (cells.quick) fill_gaps_by(std::move(cells.quick), cells.statistics.unresolved);
   if (!integrator) return;
   statistics.is_by_paths = integrator->sampling().is_by_noise();

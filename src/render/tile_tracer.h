@@ -21,7 +21,7 @@ struct TileWork {
   RadianceBatch radiance;
   std::vector<Pixel2> pixels;  // per ray
   std::unique_ptr<IntegratorScratch> scratch;
-  Counters counters;  // of the current tile
+  Counters counters;  // work of the current tile
 };
 
 // Returns the name of ray i of the TileWork at `work`, for messages of failed checks.
