@@ -150,6 +150,7 @@ TEST_CASE(
       {1.93, 1},    {1.9, 1},     {1.85, 1},     // wall, brighter room
       {2.07, 1},    {2.1, 1},     {2.15, 1},     // its other side, darker room
       {1.92, 1.92}, {1.88, 1.88}, {1.92, 2.08},  // inner corners
+      {1.5, 1.92},  {1.5, 2.08},                 // both sides of a wall in the room
       {1.57, 3.25}, {1.52, 3.25}, {1.92, 2.97},  // front of the cupboard, corner with the wall
   };
   const PreparedScene scene(rooms_that_share_a_wall());
