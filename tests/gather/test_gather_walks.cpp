@@ -51,67 +51,6 @@ TEST_CASE("sampled sources give coated surfaces all of their light") {
 
 namespace {
 
-// Returns the mean and variance of single samples of the light that comes to the origin by way of
-// two mirrors that face each other, from a lamp in the middle. The mirrors belong to one mesh or to
-// two.
-std::array<double, 2> light_by_two_mirrors(bool is_one_mesh) {
-  Scene s;
-  Material mirror;
-  mirror.kind = MaterialKind::conductor;
-  mirror.is_reflectance = true;
-  mirror.roughness.value = 0;
-  const uint32_t material = add_material(s, mirror);
-  add_quad(s, material, {Vec3{2, -2, 0}, {2, -2, 4}, {2, 2, 4}, {2, 2, 0}});
-  add_quad(s, material, {Vec3{-2, -2, 0}, {-2, 2, 0}, {-2, 2, 4}, {-2, -2, 4}});
-  if (is_one_mesh) {
-    Mesh& all = s.meshes[0];
-    for (const Triangle& t : s.meshes[1].triangles)
-      all.triangles.push_back({t[0] + 4, t[1] + 4, t[2] + 4});
-    for (const Vec3& p : s.meshes[1].positions) all.positions.push_back(p);
-    for (const Vec3& n : s.meshes[1].normals) all.normals.push_back(n);
-    for (const Vec2& uv : s.meshes[1].uvs) all.uvs.push_back(uv);
-    s.meshes.pop_back();
-  }
-  // The lamp's lower end brings much more light than its upper end, by either mirror.
-  const uint32_t lamp =
-      add_quad(s, add_diffuse(s, Rgb{0}),
-               {Vec3{0, -0.1f, 0.2f}, {0, 0.1f, 0.2f}, {0, 0.1f, 9}, {0, -0.1f, 9}});
-  make_light(s, lamp, Rgb{1}, true);
-  const PreparedScene scene(std::move(s));
-  const auto images = MirrorImages::make(scene);
-  REQUIRE(images != nullptr);
-  REQUIRE(images->all().size() == 2);
-  const GatherWalks walks(scene, images);
-  double sum = 0, squares = 0;
-  constexpr uint32_t draws = 1 << 13;
-  for (uint32_t k = 0; k < draws; ++k) {
-    std::vector<GatherArrival> arrivals(1);
-    arrivals[0].walk.stream = hash_of(k, 77u);
-    arrivals[0].hit = {{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1e-5f};
-    GatherScratch scratch;
-    scratch.light.reset(1);
-    Counters counters;
-    walks.sample_direct_light(arrivals, scratch, counters);
-    const double e = double(luminance(scratch.light.direct[0] + scratch.light.indirect[0]));
-    sum += e / draws;
-    squares += e * e / draws;
-  }
-  return {sum, squares - sum * sum};
-}
-
-}  // namespace
-
-// Samples by two mirrors are independent, so their variances add, whatever meshes they belong to.
-// With numbers in common the variance would be twice as large.
-TEST_CASE("light by two mirrors of one mesh is sampled independently") {
-  const auto one = light_by_two_mirrors(true), two = light_by_two_mirrors(false);
-  CHECK(one[0] > 0);
-  CHECK(one[0] == doctest::Approx(two[0]).epsilon(0.05));
-  CHECK(one[1] == doctest::Approx(two[1]).epsilon(0.15));
-}
-
-namespace {
-
 enum class Cover { none, clear_coat, smooth_clear_coat };
 
 // Black surfaces with gloss all around the origin. Under a uniform sky of radiance 1 they send what
