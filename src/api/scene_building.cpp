@@ -86,15 +86,16 @@ void Scene::add_mesh(const MeshData& data) {
   const std::optional<EmissionSpec> emission = impl_->emission_for(data.emission, data.name);
   const AnchoredMesh mesh = anchored(data);
   const Affine world_from_mesh = affine(data.transform);
-  ShapeAttributes look;
-  look.material = impl_->material_for(data.material);
-  look.emission = emission;
   PlacedBounds bounds;
   add_bounds(mesh, world_from_mesh, bounds);
-  impl_->script.settle_origin(bounds.box());
-  troffer::Scene& scene = impl_->script.change();
-  GeometryPlacer(scene, bounds).add_mesh(mesh, world_from_mesh, false, look);
-  impl_->script.note_new_lights();
+  impl_->append([&] {
+    ShapeAttributes look;
+    look.material = impl_->material_for(data.material);
+    look.emission = emission;
+    impl_->script.settle_origin(bounds.box());
+    GeometryPlacer(impl_->script.change(), bounds).add_mesh(mesh, world_from_mesh, false, look);
+    impl_->script.note_new_lights();
+  });
 }
 
 void Scene::add_sphere(const SphereData& data) {
@@ -102,15 +103,17 @@ void Scene::add_sphere(const SphereData& data) {
   const Vec3d centre = place(data.centre, owner + ": its centre");
   const double radius = in_range(data.radius, 1e-6, 1e6, owner + ": its radius");
   const std::optional<EmissionSpec> emission = impl_->emission_for(data.emission, data.name);
-  ShapeAttributes look;
-  look.material = impl_->material_for(data.material);
-  look.emission = emission;
   PlacedBounds bounds;
   bounds.add_ball(centre, radius);
-  impl_->script.settle_origin(bounds.box());
-  troffer::Scene& scene = impl_->script.change();
-  GeometryPlacer(scene, bounds).add_sphere(Affine(), centre, radius, false, look);
-  impl_->script.note_new_lights();
+  impl_->append([&] {
+    ShapeAttributes look;
+    look.material = impl_->material_for(data.material);
+    look.emission = emission;
+    impl_->script.settle_origin(bounds.box());
+    GeometryPlacer(impl_->script.change(), bounds)
+        .add_sphere(Affine(), centre, radius, false, look);
+    impl_->script.note_new_lights();
+  });
 }
 
 }  // namespace troffer::api

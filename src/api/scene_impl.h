@@ -22,6 +22,18 @@ struct Scene::Impl {
   ScriptScene script;
   std::optional<uint32_t> grey{};  // number of the material for shapes without one
 
+  // Calls `add`, which appends to the scene. If it throws, the scene is as it was.
+  template <class F>
+  void append(const F& add) {
+    const std::optional<uint32_t> before = grey;
+    try {
+      script.append(add);
+    } catch (...) {
+      grey = before;
+      throw;
+    }
+  }
+
   // Returns the number of the material of that name. For "", adds the grey one if necessary. Throws
   // UsageError for an unknown name.
   uint32_t material_for(const std::string& name);

@@ -23,8 +23,10 @@ namespace {
 constexpr size_t most_environment_texels = size_t(8) << 20;
 
 void add_lamp(ScriptScene& scene, Light&& light) {
-  scene.change().lights.push_back(std::move(light));
-  scene.note_new_lights();
+  scene.append([&] {
+    scene.change().lights.push_back(std::move(light));
+    scene.note_new_lights();
+  });
 }
 
 SkyRequest sky_request(const Sky& sky) {
@@ -128,11 +130,13 @@ void Scene::add_light(const Luminaire& light) {
   WarningLog warnings;
   const troffer::Luminaire read = read_and_check_luminaire(light.file, warnings);
   const Rgb scale = luminaire_scale(s.scene(), read, light.file, lumens, kelvin) * float(dimming);
-  troffer::Scene& scene = s.change();
-  for (const Warning& w : warnings.entries()) scene.warnings.add(w.text, w.count);
-  add_luminaire(scene, light.name, read, add_web(scene, read), scale,
-                {middle - scene.origin, nadir, luminaire_axis(nadir, light.rotation), down});
-  s.note_new_lights();
+  s.append([&] {
+    troffer::Scene& scene = s.change();
+    for (const Warning& w : warnings.entries()) scene.warnings.add(w.text, w.count);
+    add_luminaire(scene, light.name, read, add_web(scene, read), scale,
+                  {middle - scene.origin, nadir, luminaire_axis(nadir, light.rotation), down});
+    s.note_new_lights();
+  });
 }
 
 void Scene::add_light(const Sky& sky) {
@@ -161,8 +165,10 @@ void Scene::add_environment(const Image& image, double scale, double rotation) {
   map.width = checked.width;
   map.height = checked.height;
   map.texels = checked.pixels;
-  troffer::add_environment(s.change(), std::move(map), scale, rotation, compass);
-  s.note_new_lights();
+  s.append([&] {
+    troffer::add_environment(s.change(), std::move(map), scale, rotation, compass);
+    s.note_new_lights();
+  });
 }
 
 }  // namespace troffer::api

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "base/error.h"
 #include "base/suggestion.h"
@@ -28,6 +29,36 @@ ScriptScene::ScriptScene(const Vec3& up, bool is_photometric) : up_(up) {
 Scene& ScriptScene::change() {
   prepared_ = nullptr;
   return scene_;
+}
+
+ScriptScene::Extent ScriptScene::extent() const {
+  const Scene& s = scene_;
+  return {s.origin,           s.meshes.size(),   s.instanced_meshes.size(),
+          s.instances.size(), s.spheres.size(),  s.disks.size(),
+          s.materials.size(), s.textures.size(), s.environments.size(),
+          s.webs.size(),      s.lights.size(),   s.cameras.size(),
+          s.warnings};
+}
+
+void ScriptScene::restore(Extent&& before) {
+  const auto shorten = [](auto& list, size_t size) {
+    list.erase(list.begin() + std::ptrdiff_t(std::min(size, list.size())), list.end());
+  };
+  Scene& s = change();
+  s.origin = before.origin;
+  shorten(s.meshes, before.meshes);
+  shorten(s.instanced_meshes, before.instanced_meshes);
+  shorten(s.instances, before.instances);
+  shorten(s.spheres, before.spheres);
+  shorten(s.disks, before.disks);
+  shorten(s.materials, before.materials);
+  shorten(s.textures, before.textures);
+  shorten(s.environments, before.environments);
+  shorten(s.webs, before.webs);
+  shorten(s.lights, before.lights);
+  shorten(s.cameras, before.cameras);
+  shorten(dimmed_, before.lights);
+  s.warnings = std::move(before.warnings);
 }
 
 // A new light takes the dimmer of older lights of its name.
@@ -124,9 +155,11 @@ size_t ScriptScene::material_named(const std::string& name) const {
 }
 
 void ScriptScene::add_sky(const SkyRequest& request, double north_deg) {
-  Scene& scene = change();
-  troffer::add_sky(scene, request, make_compass(up(), north_deg, is_mirrored(scene_)));
-  note_new_lights();
+  append([&] {
+    Scene& scene = change();
+    troffer::add_sky(scene, request, make_compass(up(), north_deg, is_mirrored(scene_)));
+    note_new_lights();
+  });
 }
 
 void ScriptScene::add_light(const DaylightOptions& options) {
@@ -140,12 +173,14 @@ void ScriptScene::add_light(const DaylightOptions& options) {
     add_daylight(changed, options, requested_up(*up_));
   else
     add_daylight(changed, options);
-  change() = with_joined_lights(std::move(changed));
-  dimmed_.clear();
-  for (const Light& e : scene_.lights) {
+  changed = with_joined_lights(std::move(changed));
+  std::vector<Dimmed> dimmed;
+  for (const Light& e : changed.lights) {
     const auto known = dimmers.find(e.name);
-    dimmed_.push_back({e.radiance, known == dimmers.end() ? 1 : known->second});
+    dimmed.push_back({e.radiance, known == dimmers.end() ? 1 : known->second});
   }
+  change() = std::move(changed);
+  dimmed_ = std::move(dimmed);
   apply_dimmers();
 }
 

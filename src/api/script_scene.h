@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/box.h"
@@ -30,6 +31,17 @@ class ScriptScene {
   // appending lights.
   Scene& change();
   void note_new_lights();
+  // Calls `add`, which appends to the scene. If it throws, the scene is as it was.
+  template <class F>
+  void append(const F& add) {
+    Extent before = extent();
+    try {
+      add();
+    } catch (...) {
+      restore(std::move(before));
+      throw;
+    }
+  }
 
   // Upward direction: the given one for a built scene, that of decide_up() for a file.
   Vec3 up() const;
@@ -74,6 +86,15 @@ class ScriptScene {
     Rgb radiance;  // at dimmer 1
     double dimmer = 1;
   };
+  // Sizes of all lists of the scene, and what else appending changes.
+  struct Extent {
+    Vec3d origin;
+    size_t meshes, instanced_meshes, instances, spheres, disks, materials, textures, environments,
+        webs, lights, cameras;
+    WarningLog warnings;
+  };
+  Extent extent() const;
+  void restore(Extent&& before);  // does not throw
   void apply_dimmers();
   void set_dimmers(const std::vector<size_t>& lights, double dimmer);
 

@@ -214,7 +214,7 @@ void add_outputs(const RenderCommand& c, const RenderResult& result, const Camer
   }
 }
 
-// Writes pictures and statistics; they replace older ones together.
+// Writes pictures and statistics; they replace older ones together, the first picture last.
 void write_files(const RenderCommand& c, const RenderResult& result, const Camera& camera,
                  const LastingRun& lasting, PreviewFiles& files, Unfinished& left,
                  const std::function<std::string()>& statistics) {
@@ -222,6 +222,7 @@ void write_files(const RenderCommand& c, const RenderResult& result, const Camer
   OutputSet set;
   add_outputs(c, result, camera, lasting, files, left, set);
   if (!c.stats.empty()) set.add(is_unfinished ? left.place(c.stats) : c.stats, statistics());
+  if (!is_unfinished) set.rename_last(c.outputs.front());
   set.commit(!c.lasting.checkpoint.empty());  // must be on disk before the checkpoint is removed
   if (is_unfinished) return;
   for (const std::string& path : c.outputs) files.is_finished(path);

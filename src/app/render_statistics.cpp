@@ -35,6 +35,12 @@ nlohmann::ordered_json plan_json(const MethodPlan& plan) {
   return j;
 }
 
+nlohmann::ordered_json preparation_json(const Counters& n) {
+  return {{"extension_rays", n.extension_rays},
+          {"shadow_rays", n.shadow_rays},
+          {"nan_samples", n.nan_samples}};
+}
+
 }  // namespace
 
 std::string statistics_json(const RenderCommand& c, const RenderResult& result,
@@ -58,6 +64,7 @@ std::string statistics_json(const RenderCommand& c, const RenderResult& result,
   j["masked"] = n.masked;
   j["mixed"] = n.mixed;
   j["nan_samples"] = n.nan_samples;
+  j["preparation"] = preparation_json(s.preparation);
   j["viewing_error"] = {{"relative_rms", s.viewing_errors.relative_rms},
                         {"share_above_1_percent", s.viewing_errors.share_above}};
   j["seconds"] = {{"import", t.import},

@@ -19,6 +19,7 @@ namespace troffer {
 namespace {
 
 constexpr float darkest = 0.01f;   // relative to the light next to it: dark up to here
+constexpr float faint = 0.05f;     // the same, where the place is enclosed
 constexpr float lit = 0.1f;        // relative to the brightest samples: lit from here on
 constexpr size_t most_tested = 6;  // lit places that each dark one is tested against
 
@@ -93,14 +94,46 @@ class TexelMap {
 
 }  // namespace
 
+bool is_enclosed(const PreparedScene& scene, const LitPlace& place, float offset, float diagonal) {
+  constexpr uint32_t looks = 16;
+  constexpr float near = 0.1f, metre = 1;  // near: share of the scene's diagonal; metre: m
+  const float limit = std::min(near * diagonal, metre);
+  std::vector<Ray> rays;
+  std::vector<Hit> hits(looks);
+  const Frame frame(place.normal);
+  for (uint32_t k = 0; k < looks; ++k) {
+    Ray ray;
+    ray.origin = place.position + place.normal * offset;
+    ray.direction = frame.to_world(cosine_hemisphere_from_square(
+        SobolGroup(hash_of(stream::cut_off_texels), purpose_camera, k).get2(0)));
+    rays.push_back(ray);
+  }
+  scene.tracer.closest(rays, hits);
+  const auto close = std::count_if(hits.begin(), hits.end(),
+                                   [&](const Hit& h) { return h.is_valid() && h.t <= limit; });
+  return 2 * uint32_t(close) >= looks;
+}
+
+namespace {
+
+// True if a place is dark beside this light. In walls and furniture a little light arrives by cells
+// and gaps; a place as dark in the open belongs to a room of its own.
+bool is_dark(const PreparedScene& scene, const LitPlace& place, float beside, float offset,
+             float diagonal) {
+  if (place.light <= darkest * beside) return true;
+  return place.light <= faint * beside && is_enclosed(scene, place, offset, diagonal);
+}
+
+}  // namespace
+
 std::vector<uint8_t> cut_off_samples(const PreparedScene& scene, std::span<const LitPlace> samples,
-                                     float offset) {
+                                     float offset, float diagonal) {
   std::vector<uint8_t> is_cut_off(samples.size(), 0);
   if (samples.empty()) return is_cut_off;
   const float bright = bright_light(samples);
   std::vector<uint32_t> dark_ones, lit_ones;
   for (uint32_t i = 0; i < samples.size(); ++i) {
-    if (samples[i].light <= darkest * bright) dark_ones.push_back(i);
+    if (is_dark(scene, samples[i], bright, offset, diagonal)) dark_ones.push_back(i);
     if (samples[i].light >= lit * bright) lit_ones.push_back(i);
   }
   if (!(bright > 0) || dark_ones.empty() || lit_ones.empty()) return is_cut_off;
@@ -136,8 +169,9 @@ void forget_cut_off_texels(const PreparedScene& scene, const TexelSites& sites, 
     map.neighbours(i, around);
     for (const uint32_t n : around) {
       const LitPlace other = place(n);
-      if (!light[n].is_known || !(other.light > 0) || own.light > darkest * other.light) continue;
+      if (!light[n].is_known || !(other.light > 0)) continue;
       const float offset = offset_of_point(own.position, box);
+      if (!is_dark(scene, own, other.light, offset, box.diagonal())) continue;
       const std::array<Ray, 1> ray{between(own, other, offset)};
       std::array<uint8_t, 1> is_hidden{};
       if (can_be_tested(own, other, offset)) scene.tracer.occluded(ray, is_hidden);
@@ -158,32 +192,14 @@ void forget_cut_off_texels(const PreparedScene& scene, const TexelSites& sites, 
   for (const uint32_t i : first) {
     map.neighbours(i, behind);
     for (const uint32_t n : behind)
-      if (light[n].is_known && luminance(light[n].irradiance) <= darkest * limit[i] &&
+      if (light[n].is_known &&
+          is_dark(scene, place(n), limit[i], offset_of_point(light[n].place, box),
+                  box.diagonal()) &&
           beside(n) == Beside::nothing_lit)
         second.push_back(n);
   }
   for (const uint32_t i : first) light[i].is_known = false;
   for (const uint32_t i : second) light[i].is_known = false;
-}
-
-bool is_enclosed(const PreparedScene& scene, const LitPlace& place, float offset, float diagonal) {
-  constexpr uint32_t looks = 16;
-  constexpr float near = 0.1f, metre = 1;  // near: share of the scene's diagonal; metre: m
-  const float limit = std::min(near * diagonal, metre);
-  std::vector<Ray> rays;
-  std::vector<Hit> hits(looks);
-  const Frame frame(place.normal);
-  for (uint32_t k = 0; k < looks; ++k) {
-    Ray ray;
-    ray.origin = place.position + place.normal * offset;
-    ray.direction = frame.to_world(cosine_hemisphere_from_square(
-        SobolGroup(hash_of(stream::cut_off_texels), purpose_camera, k).get2(0)));
-    rays.push_back(ray);
-  }
-  scene.tracer.closest(rays, hits);
-  const auto close = std::count_if(hits.begin(), hits.end(),
-                                   [&](const Hit& h) { return h.is_valid() && h.t <= limit; });
-  return 2 * uint32_t(close) >= looks;
 }
 
 }  // namespace troffer

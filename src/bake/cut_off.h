@@ -4,7 +4,6 @@
 // both sides. Nobody sees the floor inside a wall, but its darkness would show on the lit side: in
 // the texel's mean, and by blending with the next texel. So dark places do not count if something
 // stands between them and all lit places nearby.
-// where something stands between them and all lit places near them.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +22,9 @@ struct LitPlace {
 };
 
 // Returns one flag per sample of a site: 1 if it is dark and cut off from the lit samples. offset:
-// distance of ray origins from the surface.
+// distance of ray origins from the surface. diagonal: of the scene's bounds.
 std::vector<uint8_t> cut_off_samples(const PreparedScene& scene, std::span<const LitPlace> samples,
-                                     float offset);
+                                     float offset, float diagonal);
 
 // Marks texels as unknown that are dark and cut off from lit neighbours, and the dark texels behind
 // them. Page::fill() then takes their value from their neighbours.

@@ -246,7 +246,8 @@ class Lighting {
     std::vector<LitPlace> places;
     for (const Sample& s : samples) places.push_back(s.place);
     const float offset = offset_of_point(places[0].position, bounds_);
-    const std::vector<uint8_t> is_cut_off = cut_off_samples(scene_, places, offset);
+    const std::vector<uint8_t> is_cut_off =
+        cut_off_samples(scene_, places, offset, float(bounds_.diagonal()));
     size_t kept = 0;
     for (size_t i = 0; i < samples.size(); ++i) {
       const bool counts =

@@ -99,7 +99,7 @@ class RegionMerger {
   struct Rounds {
     uint32_t number = 0;
     std::vector<uint32_t> active, next_active;  // parts
-    Vec2d axis;                                 // of the rows
+    Vec2d axis;                                 // axis of the rows
   } rounds_;
   struct Boundary {
     std::vector<uint32_t> next, loop;

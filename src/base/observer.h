@@ -10,7 +10,7 @@
 namespace troffer {
 
 constexpr int least_visible_nm = 360, most_visible_nm = 830;
-constexpr int observer_step_nm = 5;  // of the tables, linear in between
+constexpr int observer_step_nm = 5;  // between values of the tables; linear in between
 
 // Colour matching functions [1]; 0 outside the visible range.
 Vec3d color_matching(double nm);

@@ -22,7 +22,7 @@ struct SharedWork {
   using Bytes = std::vector<uint8_t>;
 
   size_t items = 0;
-  int threads = 0;  // of this process; 0 = all cores
+  int threads = 0;  // threads of this process; 0 = all cores
   // Does one item; it may only write to places that depend on the item. `slot` is as in
   // parallel_for_slots. Returns false if a stop interrupted it.
   std::function<bool(size_t item, size_t slot)> act;

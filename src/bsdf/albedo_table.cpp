@@ -14,7 +14,7 @@ constexpr size_t facet_azimuths = 24, facet_heights = 32,
 // Microfacets seen from a direction in the plane y = 0, for integrals over visible normals. One
 // array per field, because loops over them dominate the time to build the tables.
 struct Facets {
-  float alpha = 0, view_z = 0, lambda = 0;         // of the viewing direction
+  float alpha = 0, view_z = 0, lambda = 0;         // GGX width, and terms of the viewing direction
   std::array<float, facet_count> cos_o, normal_z;  // wo·m, m.z
   std::array<float, facet_count> weight;           // share of the visible area; sum 1
   std::array<float, facet_count> reflect;          // weight G2 / G1 of the mirror direction

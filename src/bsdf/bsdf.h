@@ -52,7 +52,7 @@ struct Bsdf {
   bool has_separable = false;  // has the soft lobe or any separable lobe below
 
   bool is_grained = false;  // the glossy lobe has two widths, `widths`; else `alpha`
-  FacetModel facets = FacetModel::balanced;  // of the glossy lobe
+  FacetModel facets = FacetModel::balanced;  // microfacets of the glossy lobe
 
   float alpha = 0;   // GGX width of the glossy lobe; with a grain: geometric mean of both
   GgxWidths widths;  // in the frame whose x axis is the grain
@@ -64,7 +64,7 @@ struct Bsdf {
   Rgb glass_transmit;      // factor on 1 - glass_scale × reflectance
   float glass_weight = 0;  // share of the surface that is glass
   float glass_scale = 1;
-  Rgb absorbed;               // of a thin sheet: Material::absorption
+  Rgb absorbed;               // in a thin sheet: Material::absorption
   Rgb reflected_share{1};     // factor on the reflectance of conductor, coat or glass
   bool is_absorbing = false;  // transmitted light enters or leaves an absorbing body
 

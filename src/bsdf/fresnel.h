@@ -58,7 +58,9 @@ inline PlateShares absorbing_plate(float cos_i, float eta, float a) {
   for (const float amplitude :
        {(eta * c - cos_t) / (eta * c + cos_t), (c - eta * cos_t) / (c + eta * cos_t)}) {
     const float r = amplitude * amplitude;
-    const float through = (1 - r) * (1 - r) * a / (1 - r * r * a * a);
+    // At grazing incidence r rounds to 1; without absorption numerator and denominator are then 0,
+    // and the limit is 0.
+    const float through = (1 - r) * (1 - r) * a / std::max(1 - r * r * a * a, 1e-12f);
     sum.transmitted += 0.5f * through;
     sum.reflected += 0.5f * (r + r * a * through);
   }

@@ -6,6 +6,7 @@
 
 #include "bsdf/facet_lobe.h"
 #include "bsdf/fresnel.h"
+#include "bsdf/index_classes.h"
 #include "bsdf/material_inputs.h"
 
 namespace troffer {
@@ -16,37 +17,51 @@ float safe_ior(float ior) {
   return std::isfinite(ior) && ior > 0 ? std::clamp(ior, 0.01f, 100.0f) : 1.5f;
 }
 
-// Returns the index of the table for this ior. Makes one while there is room; otherwise returns the
-// nearest.
+// Indices of refraction of the tables of a scene.
+struct Indices {
+  IndexClasses coats, glasses;
+};
+
+// Adds the indices for which a material needs tables.
+void add_indices(const PreparedMaterial& p, const TableNeeds& needs, Indices& indices) {
+  if (needs.has_coat) indices.coats.add(p.ior);
+  if (needs.has_clear_coat) indices.coats.add(p.clear_coat_ior);
+  if (needs.has_clear_inside) indices.coats.add(1 / p.clear_coat_ior);
+  if (needs.has_glass && std::abs(p.ior - 1) >= index_matched) indices.glasses.add(p.ior);
+}
+
 template <class Table>
-int32_t table_for(std::vector<Table>& tables, float ior, size_t max_tables) {
+void set_indices(const IndexClasses& classes, std::vector<Table>& tables) {
+  tables.resize(classes.size());
+  for (size_t i = 0; i < tables.size(); ++i) tables[i].ior = classes.representative(i);
+}
+
+// How much two parameters of tables that are not negative differ: their ratio's logarithm, or the
+// difference where they are small.
+float distance(float a, float b) {
+  constexpr float small = 1e-3f;
+  return std::abs(std::log((a + small) / (b + small)));
+}
+
+float distance(const ClearCoat& a, const ClearCoat& b) {
+  return distance(a.share, b.share) + distance(a.alpha, b.alpha) + distance(a.eta, b.eta) +
+         distance(a.bend, b.bend);
+}
+
+// Returns the table of least distance; makes one if none has distance 0 and there is room.
+template <class Table, class Distance, class Make>
+int32_t nearest_or_new(std::vector<Table>& tables, size_t most, const Distance& distance,
+                       const Make& make) {
   size_t nearest = 0;
-  float distance = std::numeric_limits<float>::infinity();
+  float least = std::numeric_limits<float>::infinity();
   for (size_t i = 0; i < tables.size(); ++i) {
-    const float d = std::abs(std::log(tables[i].ior / ior));
-    if (d < distance) {
-      distance = d;
-      nearest = i;
-    }
+    const float d = distance(tables[i]);
+    if (!(d < least)) continue;
+    least = d;
+    nearest = i;
   }
-  if (distance < 1e-4f || tables.size() >= max_tables) return int32_t(nearest);
-  tables.emplace_back();
-  tables.back().ior = ior;
-  return int32_t(tables.size() - 1);
-}
-
-bool is_same(const ClearCoat& a, const ClearCoat& b) {
-  return a.share == b.share && a.alpha == b.alpha && a.eta == b.eta && a.bend == b.bend;
-}
-
-int32_t grain_for(std::vector<GrainTable>& tables, const GgxWidths& a, const ClearCoat& over,
-                  size_t max_tables) {
-  for (size_t i = 0; i < tables.size(); ++i)
-    if (tables[i].widths.along == a.along && tables[i].widths.across == a.across &&
-        is_same(tables[i].over, over))
-      return int32_t(i);
-  if (tables.size() >= max_tables) return -1;
-  tables.push_back(make_grain_table(a, over));
+  if (least == 0 || tables.size() >= most) return int32_t(nearest);
+  tables.push_back(make());
   return int32_t(tables.size() - 1);
 }
 
@@ -59,6 +74,8 @@ bool is_blended(const Material& m) {
 
 BsdfTables::BsdfTables(const std::vector<Material>& materials) {
   bool needs_ggx = false, needs_sheen = false, needs_film = false;
+  Indices indices;
+  std::vector<TableNeeds> all_needs;
   for (const Material& m : materials) {
     PreparedMaterial p;
     p.ior = safe_ior(m.ior);
@@ -68,14 +85,9 @@ BsdfTables::BsdfTables(const std::vector<Material>& materials) {
     needs_ggx |= needs.has_ggx;
     needs_sheen |= needs.has_sheen;
     needs_film |= needs.has_film;
-    if (needs.has_coat) p.coat = table_for(coats_, p.ior, max_iors);
+    add_indices(p, needs, indices);
     if (needs.single_coat_alpha > 0)
       p.rough_coat = rough_coat_for(m, needs.single_coat_alpha, p.ior);
-    if (needs.has_clear_coat) p.clear_coat = table_for(coats_, p.clear_coat_ior, max_iors);
-    if (needs.has_clear_inside)
-      p.clear_inside = table_for(coats_, 1 / p.clear_coat_ior, 2 * max_iors);
-    if (needs.has_glass && std::abs(p.ior - 1) >= index_matched)
-      p.glass = table_for(glasses_, p.ior, max_iors);
     if (needs.has_dielectric_average) {
       p.dielectric_average = fresnel_dielectric_average(p.ior);
       p.plate_average = plate_reflectance_average(p.ior);
@@ -85,7 +97,22 @@ BsdfTables::BsdfTables(const std::vector<Material>& materials) {
       for (size_t c = 0; c < 3; ++c)
         p.conductor_average[c] = fresnel_conductor_average(eta[c], k[c]);
     }
+    all_needs.push_back(needs);
     materials_.push_back(p);
+  }
+  // Clear coats have two indices, one from each side.
+  indices.coats.divide(2 * max_indices);
+  indices.glasses.divide(max_indices);
+  set_indices(indices.coats, coats_);
+  set_indices(indices.glasses, glasses_);
+  for (size_t i = 0; i < materials.size(); ++i) {
+    PreparedMaterial& p = materials_[i];
+    const TableNeeds& needs = all_needs[i];
+    if (needs.has_coat) p.coat = indices.coats.of(p.ior);
+    if (needs.has_clear_coat) p.clear_coat = indices.coats.of(p.clear_coat_ior);
+    if (needs.has_clear_inside) p.clear_inside = indices.coats.of(1 / p.clear_coat_ior);
+    if (needs.has_glass && std::abs(p.ior - 1) >= index_matched)
+      p.glass = indices.glasses.of(p.ior);
   }
   if (needs_ggx) build_albedo_tables(ggx_, coats_, glasses_);
   if (needs_sheen) build_sheen_table(sheen_);
@@ -103,16 +130,16 @@ void BsdfTables::set_rows(ClearCoat& clear, const PreparedMaterial& p) const {
   if (clear.bend > 1) clear.inner = coat(p.clear_inside).reflected.row(clear.alpha);
 }
 
-// Beyond max_iors tables it returns -1, and the coat is treated as balanced.
 int32_t BsdfTables::rough_coat_for(const Material& m, float alpha, float ior) {
   const FacetShape shape = shape_of(m.facets);
-  for (size_t i = 0; i < rough_coats_.size(); ++i)
-    if (rough_coats_[i].shape == shape && rough_coats_[i].alpha == alpha &&
-        rough_coats_[i].ior == ior)
-      return int32_t(i);
-  if (rough_coats_.size() >= max_iors) return -1;
-  rough_coats_.push_back(make_rough_coat_table(shape, alpha, ior));
-  return int32_t(rough_coats_.size() - 1);
+  constexpr float other_shape = 1e3f;  // more than any difference of width and index
+  return nearest_or_new(
+      rough_coats_, max_parameters,
+      [&](const RoughCoatTable& t) {
+        return distance(t.alpha, alpha) + distance(t.ior, ior) +
+               (t.shape == shape ? 0.0f : other_shape);
+      },
+      [&] { return make_rough_coat_table(shape, alpha, ior); });
 }
 
 // Runs after the other tables are built: tables under a clear coat read them.
@@ -123,7 +150,14 @@ void BsdfTables::build_grain_tables(const std::vector<Material>& materials) {
     if (!(needs.grain.along > 0)) continue;
     ClearCoat& over = needs.coat_over_grain;
     set_rows(over, p);
-    p.grain = grain_for(grains_, needs.grain, over, max_iors);
+    const GgxWidths& a = needs.grain;
+    p.grain = nearest_or_new(
+        grains_, max_parameters,
+        [&](const GrainTable& t) {
+          return distance(t.widths.along, a.along) + distance(t.widths.across, a.across) +
+                 distance(t.over, over);
+        },
+        [&] { return make_grain_table(a, over); });
   }
 }
 
@@ -135,15 +169,14 @@ void BsdfTables::build_film_glass_tables(const std::vector<Material>& materials)
     if (!(alpha > 0) || p.glass < 0) continue;
     const ThinFilm film =
         film_of(m, safe01(m.iridescence.value), safe01(m.film_thickness.value), interference_);
-    const auto found =
-        std::find_if(film_glasses_.begin(), film_glasses_.end(), [&](const FilmGlassTable& t) {
-          return t.alpha == alpha && t.ior == p.ior && t.film.share == film.share &&
-                 t.film.ior == film.ior && t.film.thickness_nm == film.thickness_nm;
-        });
-    if (found == film_glasses_.end() && film_glasses_.size() >= max_iors) continue;
-    p.film_glass = int32_t(found - film_glasses_.begin());
-    if (found == film_glasses_.end())
-      film_glasses_.push_back(make_film_glass_table(alpha, p.ior, film));
+    p.film_glass = nearest_or_new(
+        film_glasses_, max_parameters,
+        [&](const FilmGlassTable& t) {
+          return distance(t.alpha, alpha) + distance(t.ior, p.ior) +
+                 distance(t.film.share, film.share) + distance(t.film.ior, film.ior) +
+                 distance(t.film.thickness_nm, film.thickness_nm);
+        },
+        [&] { return make_film_glass_table(alpha, p.ior, film); });
   }
 }
 

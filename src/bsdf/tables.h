@@ -62,8 +62,8 @@ class BsdfTables {
  public:
   // Takes some ten milliseconds. Each distinct index of refraction of rough dielectrics and coats,
   // pair of grain widths and film over rough glass takes about as much. Sheen takes a tenth of a
-  // second. Beyond `max_iors` distinct indices of a kind, the nearest tabulated one is used. Beyond
-  // as many pairs of widths or films, there is no table.
+  // second. Beyond `max_indices` distinct indices, similar ones share a table (IndexClasses).
+  // Beyond `max_parameters` pairs of widths or films, a material takes the nearest table.
   explicit BsdfTables(const std::vector<Material>& materials);
   explicit BsdfTables(const Scene& scene) : BsdfTables(scene.materials) {}
 
@@ -82,7 +82,8 @@ class BsdfTables {
   Rgb reflectance_average(Rgb r) const;
 
  private:
-  static constexpr size_t max_iors = 32, reflectances = 65;
+  // Limits by time: 32 indices, or 64 of coats, take .3 to .6 s, 256 pairs of widths or films 3 s.
+  static constexpr size_t max_indices = 32, max_parameters = 256, reflectances = 65;
 
   std::vector<PreparedMaterial> materials_;
   GgxTables ggx_;

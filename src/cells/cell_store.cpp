@@ -9,8 +9,8 @@ namespace troffer {
 
 namespace {
 
-constexpr OwnFile cell_file{{'t', 'r', 'o', 'f', 'f', 'C', 'e', 'l'}, 6, "cell file"};
-constexpr uint32_t most_rays = 1 << 16;  // of one part of a row
+constexpr OwnFile cell_file{{'t', 'r', 'o', 'f', 'f', 'C', 'e', 'l'}, 7, "cell file"};
+constexpr uint32_t most_rays = 1 << 16;  // largest number for one part of a row
 constexpr uint32_t divided_flag = 1, halved_flag = 2;
 
 struct Header {
@@ -20,7 +20,7 @@ struct Header {
   uint64_t scene_key;
   double direct_error;
   uint64_t cells, hits, slots, parts, entries;
-  uint64_t hash;  // of the body, and of the header with 0 here
+  uint64_t hash;  // hash of the body, and of the header with 0 here
 };
 static_assert(sizeof(Header) == 80);
 
@@ -59,7 +59,7 @@ bool is_unit(const Vec3& v) {
 struct CellMapParts {
   static uint64_t hits_of(const CellMap& map) {
     uint64_t n = 0;
-    for (const CellMap::Hits& h : map.hits_) n += h.count;
+    for (size_t c = 0; c < map.size(); ++c) n += map.hits(c).size();
     return n;
   }
   static uint64_t slots_of(const CellMap& map) { return map.used_; }
@@ -69,11 +69,11 @@ struct CellMapParts {
     for (size_t c = 0; c < map.size(); ++c) {
       const CellMap::Anchor& a = map.anchors_[c];
       const uint32_t flags = (a.is_divided ? divided_flag : 0) | (a.is_halved ? halved_flag : 0);
-      append(out, FileCell{a.position, a.normal, a.next, a.size, flags, map.hits_[c].count,
-                           s.direct[c], s.direct_half_difference[c]});
+      append(out, FileCell{a.position, a.normal, a.next, a.size, flags,
+                           uint32_t(map.hits(c).size()), s.direct[c], s.direct_half_difference[c]});
     }
-    for (const CellMap::Hits& h : map.hits_)
-      for (uint32_t i = 0; i < h.count; ++i) append(out, h.hits[i]);
+    for (size_t c = 0; c < map.size(); ++c)
+      for (const CellHit& hit : map.hits(c)) append(out, hit);
     std::vector<FileSlot> slots;
     for (const CellMap::Slot& slot : map.slots_)
       if (slot.key != 0) slots.push_back({slot.key, slot.first, 0});
@@ -87,27 +87,36 @@ struct CellMapParts {
   // they were made, so their lists end.
   static bool read_cell(const FileCell& f, size_t cell, size_t cells, CellMap& map) {
     if (!is_finite(f.position) || !is_unit(f.normal) || !(f.size > 0) || !std::isfinite(f.size) ||
-        f.flags > (divided_flag | halved_flag) || f.hits > hits_per_cell)
+        f.flags > (divided_flag | halved_flag) || f.hits > hits_of_asked_cell)
       return false;
     const bool is_halved = (f.flags & halved_flag) != 0;
     if (is_halved != (f.hits == 0)) return false;
     if (f.next != no_cell && (f.next <= cell || f.next >= cells)) return false;
     map.anchors_.push_back(
         {f.position, f.normal, f.next, f.size, (f.flags & divided_flag) != 0, is_halved});
-    map.hits_.emplace_back().count = f.hits;
+    CellMap::Hits& hits = map.hits_.emplace_back();
+    hits.count = std::min(f.hits, uint32_t(hits_per_cell));
+    if (f.hits > hits_per_cell) {
+      hits.more = uint32_t(map.more_hits_.size());
+      map.more_hits_.emplace_back(f.hits);
+    }
     return true;
   }
 
   static bool read_hits(ByteReader& in, CellMap& map) {
-    for (CellMap::Hits& h : map.hits_)
-      for (uint32_t i = 0; i < h.count; ++i) {
+    for (CellMap::Hits& h : map.hits_) {
+      const auto all = h.more == no_cell ? std::span(h.hits.data(), size_t(h.count))
+                                         : std::span(map.more_hits_[h.more]);
+      for (size_t i = 0; i < all.size(); ++i) {
         const auto hit = in.next<CellHit>();
         if (!is_finite(hit.position) || !is_unit(hit.normal) || !is_unit(hit.horizon) ||
             !(hit.offset >= 0) || !std::isfinite(hit.offset) || !std::isfinite(hit.uv.x) ||
             !std::isfinite(hit.uv.y))
           return false;
-        h.hits[i] = hit;
+        all[i] = hit;
+        if (i < h.count) h.hits[i] = hit;
       }
+    }
     return true;
   }
 
@@ -173,7 +182,8 @@ bool read_cells(ByteReader& in, const Header& h, CellMap& map, CellStore& store)
   uint64_t hits = 0;
   for (size_t c = 0; c < h.cells; ++c) {
     const auto f = in.next<FileCell>();
-    if (!CellMapParts::read_cell(f, c, h.cells, map)) return false;
+    // Cells reserve room for their hits, so they may not announce more than the file has.
+    if (f.hits > h.hits - hits || !CellMapParts::read_cell(f, c, h.cells, map)) return false;
     if (!is_finite(f.direct) || !std::isfinite(f.direct_half_difference)) return false;
     hits += f.hits;
     store.direct.push_back(f.direct);

@@ -29,7 +29,7 @@ struct CertifiedLightsScratch {
   CertifiedLightsScratch(const CertifiedOptions& o, ShadowWorld w, SourceIntegrand i)
       : options(o), world(std::move(w)), integrand(std::move(i)) {}
   WaitingHits hits;
-  SampleRequest request;  // of the current batch
+  SampleRequest request;  // request of the current batch
   CertifiedOptions options;
   ShadowWorld world;
   SourceIntegrand integrand;

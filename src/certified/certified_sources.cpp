@@ -69,7 +69,8 @@ const CertifiedSource* CertifiedSources::source_of(uint32_t primitive, bool is_b
                                                    const Vec3& point) const {
   int32_t i = (is_back ? source_of_back_ : source_of_front_)[primitive];
   if (i < 0) return nullptr;
-  // A polygon light may have several parts that share a primitive.
+  // A polygon light may have several parts that share a primitive. They cover it, so a point that
+  // rounding places beside all of them lies at the edge of one; it counts as the last in the list.
   while (before_[size_t(i)] >= 0 && !covers(sources_[size_t(i)].flat, point))
     i = before_[size_t(i)];
   return &sources_[size_t(i)];

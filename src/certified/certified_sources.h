@@ -21,7 +21,7 @@ namespace troffer {
 
 // Environment lights of a scene as sources.
 struct CertifiedEnvironment {
-  const SkyPatches* cells = nullptr;  // of the prepared scene
+  const SkyPatches* cells = nullptr;  // those of the prepared scene
   uint32_t first_source = 0;          // index of the first sky patch; they come last in all()
   const Occluders* occluders = nullptr;
   LargeFacets scene;          // the scene's largest facets

@@ -24,7 +24,7 @@ struct OpenPartInputs {
   const WaitingHits& hits;
   std::span<const uint32_t> members;                // hits of the cluster, in its order
   const CertifiedCluster& cluster;                  // as certified_light() left it
-  std::span<const CertifiedSource* const> sources;  // of the cluster's requests
+  std::span<const CertifiedSource* const> sources;  // sources of the cluster's requests
 };
 
 // Samples points of cluster.memory.left for each member. Their number is chosen so that they err by

@@ -28,7 +28,7 @@ struct SkyPatchPart {
 };
 
 struct SkyPatchParts {
-  std::vector<SkyPatchPart> parts;  // of skies and images
+  std::vector<SkyPatchPart> parts;  // parts of skies and images
   std::vector<SkyPatchPart> suns;   // one per sun
 };
 

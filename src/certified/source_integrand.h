@@ -32,7 +32,7 @@ struct CertifiedSource {
   uint64_t stream = 0;
   const SkyPatch* far = nullptr;  // sky patch of an environment light; else null
   Vec3 towards;                   // unit direction from the scene's centre to the patch's
-  float solid_angle = 0;          // of the sky patch, sr
+  float solid_angle = 0;          // solid angle of the sky patch, sr
 
   Box bounds() const;
   // Projected solid angle at x with unit normal n, unoccluded, sr.

@@ -14,9 +14,9 @@ namespace troffer {
 // Hits that wait for light, as arrays of equal length (except glossy_hits).
 struct WaitingHits {
   std::vector<ShadowReceiver> receivers;
-  std::vector<Vec3> positions, horizons;  // of the receivers, for clustering
+  std::vector<Vec3> positions, horizons;  // those of the receivers, for clustering
   std::vector<Rgb> weights;               // throughput; times reflectance / pi at matte hits
-  std::vector<uint32_t> indices;          // of the viewing rays
+  std::vector<uint32_t> indices;          // viewing rays of the hits
   std::vector<uint64_t> pixels;           // hash of the pixel
   std::vector<uint32_t> samples;          // sample number within the pixel
   std::vector<uint64_t> draw_streams;     // random streams for light sampling
@@ -48,7 +48,7 @@ inline void count_answer(const SourceVisibility& a, Counters& counters) {
 // The current cluster in the form that certified_light() takes, and its scratch memory.
 struct CertifiedCluster {
   std::vector<ShadowReceiver> receivers;
-  ShadowCluster shadow;  // of the receivers
+  ShadowCluster shadow;  // the receivers, as the shadow algorithms see them
   std::vector<LightRequest> requests;
   CertifiedMemory memory;
 };

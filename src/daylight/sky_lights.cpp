@@ -86,7 +86,7 @@ void add_sky(Scene& scene, const SkyRequest& request, const Compass& compass) {
   sky.radiance = Rgb{float(a.diffuse_lx * unit / horizontal_integral(a.shape, zenith_rad))};
   const double global_lx = a.diffuse_lx + a.direct_lx * std::max(0.0, dot(to_sun, compass.up));
   sky.sky.ground = Rgb{float(request.ground_reflectance * global_lx * unit / pi)};
-  if (!sky.radiance.is_black() || !sky.sky.ground.is_black()) scene.lights.push_back(sky);
+  if (emits(sky)) scene.lights.push_back(sky);
 
   if (!request.sun || !(a.direct_lx > 0)) return;
   Light sun;

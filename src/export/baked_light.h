@@ -32,7 +32,7 @@ struct BakedLight {
   BakedShading shading = BakedShading::lightmap;
   std::vector<std::vector<uint8_t>> pages;  // PNG
   double white = 1;
-  std::vector<BakedSurface> meshes, instances;  // of Scene::meshes, Scene::instances
+  std::vector<BakedSurface> meshes, instances;  // one per item of Scene::meshes, Scene::instances
   // Entries of asset.extras: names and JSON values.
   std::vector<std::pair<std::string, std::string>> notes;
 };

@@ -42,7 +42,7 @@ class PbrtMaterialWriter {
   uint32_t material_ = 0;                                // argument of begin()
   PbrtUvs* placing_ = nullptr;
   std::map<std::string, std::string> textures_;  // content -> name
-  std::string definitions_;                      // of textures, not yet written
+  std::string definitions_;                      // definitions of textures, not yet written
   size_t images_ = 0, media_ = 0;
 
   std::string material_text(const Material& m);

@@ -15,7 +15,7 @@ constexpr int most_close = 8;
 struct RayWorker {
   GatherScratch gather;
   std::vector<GatherArrival> close;  // hits on sub-cell features
-  std::vector<uint32_t> tasks;       // of each ray
+  std::vector<uint32_t> tasks;       // task of each ray
   std::vector<float> scales;  // per task of a chunk: rays over the sum of their coats' factors
   Counters counters;
 };

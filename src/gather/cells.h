@@ -18,7 +18,7 @@ namespace troffer {
 struct CellStatistics {
   uint64_t cells = 0, entries = 0, rays = 0;
   int rounds = 0, iterations = 0;
-  double size = 0;        // of a cell, metres
+  double size = 0;        // size of a cell, metres
   double typical = 0;     // mean luminance of indirect light in the picture
   double unresolved = 0;  // share of the asked light that comes by cells without a row
   double bytes = 0;
@@ -30,7 +30,7 @@ struct GatheredLight {
   std::vector<Rgb> irradiance;         // per ray
   std::vector<float> half_difference;  // per ray: luminance, draw of the noise of cells (CellLight)
   std::vector<float> distance;  // metres to the first matte or black surface, all the way; 0: none
-  NoiseDraws noise{};           // of the sum over all rays; 0 if unknown
+  NoiseDraws noise{};           // noise of the sum over all rays; 0 if unknown
 
   void reset(size_t rays);
 };

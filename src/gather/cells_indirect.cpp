@@ -54,7 +54,7 @@ GatherNumbers numbers_of_hit(float wanted, const Walk& at, uint32_t effort_divis
 }  // namespace
 
 struct CellsIndirect::Scratch final : IndirectLightScratch {
-  SampleRequest request;  // of the current batch
+  SampleRequest request;  // request of the current batch
   CellsScratch cells;
   // Per hit whose rays are in cells.walks: index of its viewing ray, and end of its rays.
   std::vector<uint32_t> indices, ends;

@@ -12,9 +12,10 @@ namespace troffer {
 
 class GatherFits {
  public:
-  static constexpr int most_pixels = 16;                      // radius of a fit
-  static constexpr int usual_pixels = 5;                      // radius of usual_rays()
-  static constexpr uint32_t first_rays = 8, most_rays = 512;  // of a record
+  static constexpr int most_pixels = 16;  // radius of a fit
+  static constexpr int usual_pixels = 5;  // radius of usual_rays()
+  static constexpr uint32_t first_rays = 8,
+                            most_rays = 512;  // smallest and largest number for a record
   // Radius within which light is nearly linear, in harmonic mean distances.
   static constexpr float near_radius = 0.06f;
 
@@ -23,7 +24,7 @@ class GatherFits {
   // Means over the records around one.
   struct Surroundings {
     float nearness = 0;  // mean of 1 / distance, 1/m
-    float variance = 0;  // of a gather of 16 rays, by the spread of rays
+    float variance = 0;  // variance of a gather of 16 rays, by the spread of rays
     float records = 0;   // number of records averaged
   };
 

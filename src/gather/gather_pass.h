@@ -19,7 +19,7 @@ class GatherPass {
 
  private:
   struct Tile {
-    PixelWindow pixels;  // of the tile, within the window
+    PixelWindow pixels;  // pixels of the tile, within the window
     int x = 0, y = 0;    // first pixel of the tile in the tiling of the whole picture
     std::vector<GatherRecord> records;  // pixel by pixel, row by row; empty after join()
     std::vector<uint16_t> counts;       // records of each pixel

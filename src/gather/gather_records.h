@@ -46,9 +46,9 @@ struct GatherOptions {
 // Sums over the rays of a gather.
 struct GatherSums {
   Rgb sum;
-  float squares = 0;          // of squared luminance
-  float bright_nearness = 0;  // of luminance / distance
-  float half = 0;             // of draws of the noise of cells, luminance (CellLight)
+  float squares = 0;          // sum of squared luminance
+  float bright_nearness = 0;  // sum of luminance / distance
+  float half = 0;             // sum of draws of the noise of cells, luminance (CellLight)
   float weight = 0;           // not a sum: luminance of the pixel per unit of this light
 };
 
@@ -63,7 +63,7 @@ struct GatherRecord {
   // to the eye, divided by what it reflects under a uniform radiance of 1.
   GlossPlace place;
   GatherSums gloss;
-  float width = 1;  // of the gloss (GGX)
+  float width = 1;  // width of the gloss (GGX)
 };
 
 // The fit at a record.

@@ -314,23 +314,24 @@ void GatherWalks::sample_direct_light(const std::vector<GatherArrival>& arrivals
   for (size_t first = 0, end = 0; first < arrivals.size(); first = end) {
     while (end < arrivals.size() && arrivals[end].walk.vertex == arrivals[first].walk.vertex) ++end;
     const auto group = std::span(arrivals).subspan(first, end - first);
-    light_up_by(lit_, nullptr, group, s, counters);
+    light_up_by(lit_, -1, group, s, counters);
     for (size_t i = 0; i < lit_images_.size(); ++i)
-      light_up_by(lit_images_[i], &images_->all()[i].mirror, group, s, counters);
+      light_up_by(lit_images_[i], int32_t(i), group, s, counters);
   }
 }
 
-// mirror: of the image whose lights `tree` has; null: the scene itself.
-void GatherWalks::light_up_by(const LightTreeDirect& tree, const FlatMirror* mirror,
+// image: the one whose lights `tree` has; -1: the scene itself.
+void GatherWalks::light_up_by(const LightTreeDirect& tree, int32_t image,
                               std::span<const GatherArrival> arrivals, GatherScratch& s,
                               Counters& counters) const {
   s.rough.clear();
+  const FlatMirror* mirror = image < 0 ? nullptr : &images_->all()[size_t(image)].mirror;
   for (const GatherArrival& a : arrivals) {
     if (mirror != nullptr && mirror->above(a.hit.position) <= mirror->tolerance) continue;
     s.rough.walks.push_back(a.walk);
     if (mirror != nullptr)
       s.rough.walks.back().stream =
-          hash_of(a.walk.stream, stream::mirror_image_of_arrival, uint64_t(mirror->mesh));
+          hash_of(a.walk.stream, stream::mirror_image_of_arrival, uint64_t(image));
     s.rough.vertices.push_back(vertex_of(a.hit));
     s.rough.bsdfs.push_back(white_at(a.hit, 1));
   }

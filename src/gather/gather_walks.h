@@ -51,7 +51,7 @@ struct GatherScratch {
   RadianceBatch light;                  // result: radiance from sources, direct + indirect
   std::vector<float> black;  // result: metres that each ray went to a black surface; 0: none
   WalkScratch trace;
-  std::vector<Vertex> vertices;  // of each walk that hit something
+  std::vector<Vertex> vertices;  // vertices of each walk that hit something
   // Vertices at which lights are sampled.
   WaveHits rough;
   LightTreeDirectScratch tree;
@@ -91,7 +91,7 @@ class GatherWalks {
                      GatherScratch& s) const;
   void see(const Walk& walk, Rgb radiance, float weight, GatherScratch& s) const;
   bool counts(const Walk& walk, uint32_t light) const;
-  void light_up_by(const LightTreeDirect& tree, const FlatMirror* mirror,
+  void light_up_by(const LightTreeDirect& tree, int32_t image,
                    std::span<const GatherArrival> arrivals, GatherScratch& s,
                    Counters& counters) const;
   void go_on(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering, float distance,

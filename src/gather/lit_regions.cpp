@@ -15,7 +15,7 @@ constexpr double least_brightness = 2;  // threshold of a bright cell, over the 
 // Guiding pays only if the best possible share of rays towards bright cells would leave less than
 // this part of the mean square.
 constexpr double most_left = 0.6;
-constexpr float first_radius = 2;  // of a region, in cells; grows until most_places suffice
+constexpr float first_radius = 2;  // of a region, in cells; it grows until most_places suffice
 // Least sine of a cone's half angle; least distance of a place from a region's centre, in radii.
 constexpr float least_sine = 0.02f, least_distance = 1.2f;
 // Share of its cone that a region of mixed normals is taken to fill; least length of the mean
@@ -28,7 +28,7 @@ constexpr size_t least_tries = 2;       // visibility tests of each region
 
 struct BrightCell {
   Vec3 position, normal;
-  double share = 0;       // of pilot rays that meet it
+  double share = 0;       // share of pilot rays that meet it
   double irradiance = 0;  // mean irradiance that one of them brings
   const PilotHit* first = nullptr;
   uint32_t hits = 0;

@@ -40,8 +40,8 @@ double mean_square(const PointsSeen& points, size_t p, const std::vector<NoiseDr
 // Gather of a point that gets light by way of cells.
 struct PointGathers {
   size_t point;
-  double light;     // of all kinds: luminance
-  double variance;  // of one gather ray
+  double light;     // luminance of all light together
+  double variance;  // variance of one gather ray
 };
 
 std::vector<PointGathers> gathers_of(const PointsSeen& points, const std::vector<float>& direct,

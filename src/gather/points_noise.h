@@ -16,9 +16,9 @@ namespace troffer {
 // Gather rays of measuring points. Each point gets `rays`, or up to `most_rays` until the relative
 // error of all its light is `error`. Error 0: `rays` suffice.
 struct GatheringPoints {
-  double rays = 0, most_rays = 0;  // of each point
+  double rays = 0, most_rays = 0;  // planned and largest number for each point
   double error = 0;
-  double other_rays = 0;  // of all points together, traced anyway (an audit)
+  double other_rays = 0;  // rays for all points together that are traced anyway (an audit)
 };
 
 // The cell that one ray of a point saw.

@@ -27,7 +27,7 @@ class SensorDistributions {
 
   const LitRegions* places_ = nullptr;
   const SensorBatch* sensors_ = nullptr;
-  size_t end_ = 0;  // of the sensors that aim_ serves
+  size_t end_ = 0;  // one past the last sensor that aim_ serves
   GatherDistribution aim_;
   // Place of aim_, if it is for one place.
   CellHit place_;

@@ -12,8 +12,9 @@ namespace troffer {
 
 namespace {
 
-constexpr float reach = 3;           // distance to lights that are looked at, in widths of the cell
-constexpr double most_spread = 0.5;  // of irradiance over a cell: standard deviation over mean
+constexpr float reach = 3;  // distance to lights that are looked at, in widths of the cell
+constexpr double most_spread =
+    0.5;  // largest standard deviation of irradiance over a cell, relative to its mean
 // With more pieces of lights nearby a cell counts as uneven; smaller cells have fewer.
 constexpr size_t most_lights = 1024;
 constexpr int per_side = 3;  // test places along either side of a cell

@@ -9,7 +9,7 @@
 namespace troffer {
 
 struct FileIdentity {
-  uint64_t device = 0, number = 0;  // of the file, or of its folder if it does not exist
+  uint64_t device = 0, number = 0;  // those of the file, or of its folder if it does not exist
   std::string name;                 // name in that folder; empty if the file exists
   bool operator==(const FileIdentity&) const = default;
 };

@@ -19,9 +19,11 @@ namespace troffer {
 std::vector<uint8_t> encode_image(const std::string& path, std::span<const Layer> layers,
                                   const WriteOptions& options);
 
-// Writes everything to temporary files; commit() renames them in the order of add(). Add the main
-// file last, so that it never appears next to older files of its set. A failure before commit()
-// leaves all targets unchanged. Throws like AtomicFile and write_image().
+// Writes everything to temporary files; commit() renames them in the order of add(). The main file
+// is renamed last, so that it never appears next to older files of its set: add it last, or name it
+// by rename_last(). A failure before commit() leaves all targets unchanged. A process that is
+// killed during commit() may leave other files new beside the old main file. Throws like AtomicFile
+// and write_image().
 class OutputSet {
  public:
   void add(const std::string& path, std::span<const uint8_t> bytes);
@@ -29,11 +31,18 @@ class OutputSet {
   // Adds an image in the format of write_image().
   void add(const std::string& path, std::span<const Layer> layers, const WriteOptions& options);
 
+  // Lets commit() rename a file after all others. Does nothing for a path that was not added.
+  void rename_last(const std::string& path);
+
   // to_disk: the files are complete even after a power failure.
   void commit(bool to_disk = false);
 
  private:
-  std::vector<std::unique_ptr<AtomicFile>> files_;
+  struct Output {
+    std::string path;
+    std::unique_ptr<AtomicFile> file;
+  };
+  std::vector<Output> files_;
 };
 
 }  // namespace troffer

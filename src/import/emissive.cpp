@@ -135,7 +135,7 @@ std::optional<std::vector<uint32_t>> boundary_loop(const std::vector<Edge>& edge
 struct Plane {
   Vec3d normal;  // unit
   double size = 0, area = 0;
-  double rounding = 0;  // of positions, in the scene's units
+  double rounding = 0;  // rounding of positions, in the scene's units
 };
 
 std::optional<Plane> plane_of(const Mesh& mesh, const Triangles& triangles) {

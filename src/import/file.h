@@ -50,7 +50,7 @@ class FileBytes {
   };
   std::unique_ptr<char[], Free> bytes_;
   size_t size_ = 0;
-  std::string unpacked_;  // of compressed files
+  std::string unpacked_;  // contents of a compressed file
 };
 
 // Records every file that read_file, read_text_file and FileBytes open while it exists, on any

@@ -11,11 +11,11 @@
 namespace troffer {
 
 struct ImportOptions {
-  std::optional<std::string> variant;    // of the materials: KHR_materials_variants
+  std::optional<std::string> variant;    // name of a set of materials: KHR_materials_variants
   std::optional<double> time;            // seconds into an animation; none: at rest
   std::optional<std::string> animation;  // by name; none: the first
   bool shows_baked = false;              // glTF: show only the light baked into the file
-  TellProgress progress;                 // of reading .obj, .ply and .stl files
+  TellProgress progress;                 // called while .obj, .ply and .stl files are read
   ImageUse images = ImageUse::read;
   // Factor on the emission of surfaces, except luminaires with a photometric web
   // (import/surface_emission.h).

@@ -11,7 +11,7 @@ namespace troffer {
 struct JsonLimits {
   size_t depth = 200;  // nested arrays and objects
   size_t values =
-      10'000'000;  // of all kinds, arrays and objects included; at most about 1 GB in memory
+      10'000'000;  // values of all kinds, arrays and objects included; at most about 1 GB in memory
 };
 
 // Throws InputError at the first level or value beyond the limits. The text need not be well

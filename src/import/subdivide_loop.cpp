@@ -24,7 +24,7 @@ struct LoopEdge {
 };
 
 struct Ring {
-  Vec3d sum, boundary_sum;  // of all neighbours; of those along boundaries
+  Vec3d sum, boundary_sum;  // sums over all neighbours, and over those along boundaries
   uint32_t neighbours = 0, boundary = 0;
 };
 

@@ -74,7 +74,7 @@ int32_t TextureLoader::remember(const std::string& key, const Texture& look, Tex
 }
 
 bool TextureLoader::was_asked_for(const std::string& image) const {
-  const std::string beginning = image + '\0';  // of request_key()
+  const std::string beginning = image + '\0';  // first part of request_key()
   const auto it = by_request_.lower_bound(beginning);
   return it != by_request_.end() && it->first.starts_with(beginning);
 }

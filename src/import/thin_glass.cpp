@@ -22,7 +22,7 @@ namespace {
 
 constexpr double most_thickness = 1.0 / 30;  // relative to the smaller side
 constexpr double cap_flatness = 1e-3;        // relative to the thickness
-constexpr size_t most_triangles = 1 << 17;   // of a mesh that is examined
+constexpr size_t most_triangles = 1 << 17;   // a larger mesh is not examined
 
 // Returns the same glass as a sheet. The tint is squared, because light crosses both faces of the
 // body.

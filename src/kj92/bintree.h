@@ -7,7 +7,8 @@
 // few rays.
 // The estimate is biased, because the number and places of rays depend on earlier results.
 // References: [1] Kok & Jansen, "Adaptive Sampling of Area Light Sources in Ray Tracing Including
-//   Diffuse Interreflection", Eurographics '92, §3 and §4. [rule n], [reuse]: docs/method/bintree.md.
+//   Diffuse Interreflection", Eurographics '92, §3 and §4. [rule n], [reuse]:
+//   docs/method/bintree.md.
 #pragma once
 
 #include <array>
@@ -61,7 +62,7 @@ struct ShadowRayResult {
 enum class BintreeStop : uint8_t { none, variance, mean, cap, finest };
 
 struct BintreeEstimate {
-  float mean = 0;      // of visibility × kernel over the square
+  float mean = 0;      // mean of visibility × kernel over the square
   float variance = 0;  // variance of the mean, estimated by the tree
   uint32_t rays = 0;   // cast for this point
   BintreeStop stop = BintreeStop::none;
@@ -121,7 +122,7 @@ class Bintree {
   std::vector<Vec2> pending_uv_;
   std::vector<int32_t> scratch_;
   struct Means {
-    std::array<float, 16> ring{};  // of the last iterations
+    std::array<float, 16> ring{};  // values of the last iterations
     size_t iterations = 0;
   } means_;
   size_t leaves_ = 1;

@@ -22,7 +22,7 @@ namespace troffer {
 struct BintreeNode {
   int32_t parent = -1;       // -1: the root
   int32_t first_child = -1;  // -1: a leaf; the second child follows the first
-  uint16_t column = 0;       // of the cell along u, in cells of this level
+  uint16_t column = 0;       // column of the cell along u, in cells of this level
   uint16_t row = 0;          // along v
   uint8_t level = 0;
   ShadowFlag flag = ShadowFlag::shadow;

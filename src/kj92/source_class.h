@@ -48,7 +48,7 @@ struct SourceAtPoint {
 struct SourceClass {
   SourceView view = SourceView::occluded;
   SourceTreatment treatment = SourceTreatment::general;
-  float least_visibility = 0, most_visibility = 0;  // of r over the points that count
+  float least_visibility = 0, most_visibility = 0;  // range of r over the points that count
   float share = 0;                                  // largest B / total
 };
 

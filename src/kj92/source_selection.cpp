@@ -220,7 +220,7 @@ class PatchSelector {
   const SelectionOptions& options_;
 
   Interpolation at_;
-  struct Points {  // of the patch
+  struct Points {  // sample points of the patch
     std::vector<uint32_t> ids;
     std::vector<GeneralIrradiance> general;  // not accounted for by treated sources
     std::vector<float> totals;

@@ -28,7 +28,7 @@ class TreePool {
     explicit Entry(const BintreeOptions& options) : tree(options) {}
     Bintree tree;
     TreeKey key;
-    Vec3 normal;               // of the surface where the pattern was found
+    Vec3 normal;               // normal of the surface where the pattern was found
     bool has_pattern = false;  // the tree holds a reusable pattern
     uint64_t last_used = 0;
   };

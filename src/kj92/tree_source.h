@@ -64,7 +64,7 @@ class TreeSource {
   Rgb radiance_;
   bool is_constant_ = true, is_convex_ = true, is_two_sided_ = false, is_black_ = false,
        is_delta_ = false;
-  Vec3 round_centre_;       // of the sphere that a patch lies on
+  Vec3 round_centre_;       // centre of the sphere that a patch lies on
   float round_radius_ = 0;  // 0: the patch is not part of a sphere
 };
 

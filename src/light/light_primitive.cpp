@@ -124,7 +124,7 @@ LightPrimitives::LightPrimitives(const Scene& scene)
     if (!has_surface(e.kind) && scene_bounds.is_empty()) scene_bounds = bounds(scene);
   for (uint32_t i = 0; i < scene.lights.size(); ++i) {
     const auto first = uint32_t(primitives_.size());
-    if (!scene.lights[i].radiance.is_black()) {
+    if (emits(scene.lights[i])) {
       switch (scene.lights[i].kind) {
         case LightKind::polygon:
           add_polygon(scene, i);

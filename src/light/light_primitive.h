@@ -30,9 +30,9 @@ struct LightPrimitive {
   bool is_inside_out = false;  // sphere whose front is the inside
   uint32_t vertex_count = 0;   // 0 for disk and sphere
   float area = 0;              // one side, m²
-  float radius = 0;            // of disk or sphere; else farthest vertex from the centroid; metres
-  Vec3 centroid;               // centre of a disk or sphere
-  Vec3 axis_x, axis_y;         // unit: along a rectangle's sides; orthogonal axes of a disk
+  float radius = 0;     // radius of disk or sphere; else farthest vertex from the centroid; metres
+  Vec3 centroid;        // centre of a disk or sphere
+  Vec3 axis_x, axis_y;  // unit: along a rectangle's sides; orthogonal axes of a disk
   float size_x = 0, size_y = 0;  // side lengths of a rectangle, metres
   Vec3d normal;                  // unit, on the front side; zero for spheres
   Vec3 vertices[4];              // counterclockwise seen from the front, if vertex_count <= 4
@@ -44,7 +44,7 @@ struct LightPrimitive {
   const Portal* portal = nullptr;  // null: none; owned by LightPrimitives
 
   uint32_t light = 0;        // index in Scene::lights
-  int32_t triangle = -1;     // of a mesh light: index in the mesh's triangles
+  int32_t triangle = -1;     // mesh lights: index in the mesh's triangles
   bool is_textured = false;  // radiance varies by texture, alpha mask or web
   Rgb mean_radiance;         // mean over the surface, W/(m² sr) or cd/m²
   float power = 0;           // luminance of the emitted flux: pi area L, twice if two-sided
@@ -110,7 +110,7 @@ class LightPrimitives {
   int32_t append(LightPrimitive p, const Light& e);
 
   std::vector<LightPrimitive> primitives_;
-  std::vector<std::vector<Vec3>> vertices_;  // of polygons with more than 4 vertices
+  std::vector<std::vector<Vec3>> vertices_;  // vertices of polygons with more than 4 vertices
   std::vector<std::unique_ptr<const DirectionTable>> directions_;
   std::vector<std::unique_ptr<const Portal>> portals_;
   std::vector<Range> ranges_;  // per light

@@ -311,7 +311,7 @@ class Cutter {
   double distance_;
   double all_ = 0;  // integral of the luminance over all directions
   std::array<std::array<double, 4>, 4> matrix_;
-  const FarTable* table_ = nullptr;  // of the current face
+  const FarTable* table_ = nullptr;  // that of the current face
   std::vector<SkyPatch>& out_;
 };
 

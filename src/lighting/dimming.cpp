@@ -43,9 +43,7 @@ Dim parse_dim(const std::string& text) {
 }  // namespace
 
 bool shines(const Scene& scene) {
-  return std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& e) {
-    return !e.radiance.is_black() || (e.kind == LightKind::sky && !e.sky.ground.is_black());
-  });
+  return std::any_of(scene.lights.begin(), scene.lights.end(), emits);
 }
 
 void dim_lights(Scene& scene, const std::vector<std::string>& dims) {

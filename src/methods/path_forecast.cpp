@@ -77,8 +77,8 @@ std::vector<double> luminances(const Integrator& paths, const ViewingRays& rays,
 // Means over the test pixels in one part of the picture.
 struct Tile {
   double luminance = 0, pixels = 0;
-  double variance = 0;         // of one path
-  double variance_of_set = 0;  // of the mean of a set
+  double variance = 0;         // variance of one path
+  double variance_of_set = 0;  // variance of the mean of a set
 };
 
 // Groups test pixels by part of the picture. A single pixel's pair does not show its noise: where

@@ -16,8 +16,8 @@ namespace troffer {
 
 struct PathForecast {
   double viewing_rays = 0;  // mean per pixel for the asked error
-  double rays = 0;          // of all kinds, for the whole picture
-  double evenness = 0;      // of a pixel's paths (PixelSampling::evenness)
+  double rays = 0;          // rays of all kinds, for the whole picture
+  double evenness = 0;      // evenness of a pixel's paths (PixelSampling::evenness)
   // Budget for making cells, in rays: `rays` less the least that a picture by cells needs besides.
   // Negative: paths cost less even if cells are free.
   double rays_for_cells = 0;

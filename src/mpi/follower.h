@@ -62,7 +62,7 @@ class Follower final : public ProcessGroup {
   std::atomic<const StopFlag*> asked_ = nullptr;
   std::mutex mutex_;  // guards everything below
   std::condition_variable news_;
-  uint64_t number_ = 0;  // of the current job
+  uint64_t number_ = 0;  // number of the current job
   std::deque<Message> leases_;
   std::map<uint64_t, Results> results_;
   struct {

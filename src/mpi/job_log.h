@@ -18,7 +18,7 @@ double thread_seconds();
 struct JobRecord {
   size_t items = 0;
   bool is_for_all = false;
-  double seconds_before = 0;  // of the calling thread, since the last job
+  double seconds_before = 0;  // time of the calling thread since the last job
   double wall_seconds = 0;
   // Rank 0's time for messages.
   double message_seconds = 0;

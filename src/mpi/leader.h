@@ -106,7 +106,7 @@ class Leader final : public ProcessGroup {
   std::atomic<bool> is_ending_ = false;  // stop requested, or out of time
   std::mutex mutex_;                     // guards everything below
   std::condition_variable news_;
-  uint64_t number_ = 0;  // of the current job
+  uint64_t number_ = 0;  // number of the current job
   std::optional<Job> job_;
   std::deque<int> wanting_;  // one entry per requested item: the process
   Others others_;

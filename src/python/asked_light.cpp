@@ -176,25 +176,20 @@ api::AddedLight added_light(const py::kwargs& asked) {
 }
 
 const char* const add_light_help =
-    "Adds light as the program's options do, and makes parts of the scene shine; what a call adds "
-    "is like lights of the file: light(), dimmer.\n\n"
-    "sky: 'even', 'overcast', 'clear', 'cie:1' to 'cie:15', each with ',LUX' of a horizontal plane "
-    "or without, 'perez:DNI,DHI' in W/m2, or 'none'\n"
-    "sun: (azimuth, altitude) or (azimuth, altitude, lux), degrees clockwise from north and above "
-    "the horizon\n"
-    "at: (latitude, longitude, time), the sun by place and time: a datetime with a time zone, or "
-    "such as '2026-06-21T12:00+02:00'\n"
-    "turbidity: Linke's, 1 to 10, of a clear sky\n"
-    "weather, date: path of an .epw file, and 'MM-DDTHH:MM' (or a datetime) in its standard time; "
-    "or with at instead of date\n"
-    "north: degrees by which it lies clockwise from the file's; ground: reflectance\n"
-    "environment: path of an image, or (path, scale); environment_rotation: degrees\n"
-    "portal: name of a part of the scene, or four corners (x, y, z), or a list of such\n"
-    "luminaires: {name: path of .ies or .ldt}, or {name: (path, lumens[, kelvin])}; lumens may be "
-    "None\n"
-    "luminaire_list: path of a .csv of luminaires to add\n"
-    "light_radius: metres; points and spots become spheres\n"
-    "up: (x, y, z)\n\n"
-    "If it raises, the scene is as it was. ValueError, TypeError, InputError for files.";
+    "Adds light as the program's options do. Parts of the scene can become luminaires. Added "
+    "lights behave like those of the file: light() finds them, and they have dimmers.\n\nsky: "
+    "'even', 'overcast', 'clear', 'cie:1' to 'cie:15', each with or without ',LUX' (illuminance of "
+    "a horizontal plane); 'perez:DNI,DHI' in W/m2; or 'none'\nsun: (azimuth, altitude) or "
+    "(azimuth, altitude, lux), in degrees clockwise from north and above the horizon\nat: "
+    "(latitude, longitude, time), which place the sun; time is a datetime with a time zone, or a "
+    "string such as '2026-06-21T12:00+02:00'\nturbidity: Linke turbidity of a clear sky, 1 to "
+    "10\nweather, date: path of an .epw file, and 'MM-DDTHH:MM' (or a datetime) in its standard "
+    "time; `at` can replace `date`\nnorth: angle by which north lies clockwise from the file's "
+    "north, degrees\nground: reflectance of the ground\nenvironment: path of an image, or (path, "
+    "scale)\nenvironment_rotation: degrees\nportal: name of a part of the scene, or four corners "
+    "(x, y, z), or a list of either\nluminaires: {name: path of .ies or .ldt}, or {name: (path, "
+    "lumens[, kelvin])}; lumens may be None\nluminaire_list: path of a .csv list of luminaires to "
+    "add\nlight_radius: metres; points and spots become spheres of this radius\nup: (x, y, "
+    "z)\n\nRaises ValueError, TypeError, or InputError for files. The scene is then unchanged.";
 
 }  // namespace troffer::bindings

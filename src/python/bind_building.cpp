@@ -80,11 +80,12 @@ void bind_shapes(SceneClass& scene) {
           py::arg("emission") = py::none(), py::arg("two_sided") = false,
           py::arg("emission_texture") = py::none(), py::arg("name") = "",
           py::arg("transform") = py::none(),
-          "Adds a mesh: positions (n, 3) in metres, triangles (m, 3) of whole numbers from 0, "
+          "Adds a mesh: positions (n, 3) in metres, triangles (m, 3) of vertex indices from 0, "
           "normals (n, 3), uvs (n, 2). material: a name or a Material; grey by default. emission: "
-          "(r, g, b) or a number, from the front alone unless two_sided; the light has the mesh's "
-          "name. The front is the side of the normals, else that from which vertices run "
-          "counterclockwise. transform: (3, 4) or (4, 4).")
+          "(r, g, b) or a number; the front alone emits unless two_sided is true, and the light "
+          "takes the mesh's name. The front is the side that the normals point to. Without normals "
+          "it is the side from which the vertices run counterclockwise. transform: (3, 4) or (4, "
+          "4).")
       .def(
           "add_sphere",
           [](api::Scene& s, const api::Point& centre, double radius, const py::object& material,
@@ -94,7 +95,7 @@ void bind_shapes(SceneClass& scene) {
           },
           py::arg("centre"), py::arg("radius"), py::kw_only(), py::arg("material") = py::none(),
           py::arg("emission") = py::none(), py::arg("name") = "",
-          "Adds a sphere; its front is outside. Arguments as of add_mesh().");
+          "Adds a sphere. Its front is the outside. The arguments are those of add_mesh().");
 }
 
 api::LookAt view_of_arguments(const api::Point& eye, const api::Point& target,
@@ -128,9 +129,9 @@ void bind_building(SceneClass& scene) {
           },
           py::arg("eye"), py::arg("target"), py::kw_only(), py::arg("up") = py::none(),
           py::arg("fov") = 60.0, py::arg("lens_radius") = 0.0, py::arg("focal_distance") = 0.0,
-          "A camera at `eye` that looks at `target` (x, y, z in metres); fov in degrees over the "
-          "picture's shorter side. lens_radius: metres, 0: all is sharp; focal_distance: metres, "
-          "0: the target's.");
+          "Returns a camera at `eye` that looks at `target` (x, y, z in metres). fov: degrees over "
+          "the picture's shorter side. lens_radius: metres; 0 makes everything sharp. "
+          "focal_distance: metres; 0 focuses on the target.");
 }
 
 }  // namespace troffer::bindings

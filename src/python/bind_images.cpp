@@ -44,9 +44,9 @@ py::array array_of(api::Image&& made) {
 
 void bind_images(py::module_& m) {
   m.def("compare", &compare_arrays, py::arg("image"), py::arg("reference"),
-        "Compares a picture with a reference, both (height, width, 3): a dict of mean_image, "
-        "mean_reference, average_difference (of 8-bit sRGB values), rmse, relative_rmse, flip, "
-        "compared_pixels, non_finite_pixels.");
+        "Compares a picture with a reference, both (height, width, 3). Returns a dict of "
+        "mean_image, mean_reference, average_difference (of 8-bit sRGB values), rmse, "
+        "relative_rmse, flip, compared_pixels, non_finite_pixels.");
   m.def(
       "read_image",
       [](const std::filesystem::path& path) {
@@ -67,7 +67,8 @@ void bind_images(py::module_& m) {
       },
       py::arg("path"), py::arg("pixels"), py::kw_only(), py::arg("exposure") = 0.0,
       py::arg("filmic") = false,
-      "Writes (height, width, 3) of linear light: .png (exposure in stops), .exr, .hdr, .pfm.");
+      "Writes a picture of linear light (height, width, 3) as .png (exposure in stops), .exr, .hdr "
+      "or .pfm.");
 }
 
 }  // namespace troffer::bindings

@@ -29,21 +29,22 @@ void bind_light(py::module_& m) {
       .def_readonly("name", &LightHandle::name, "The name.")
       .def_property_readonly(
           "kind", [](const LightHandle& e) { return e.info().kind; },
-          "'polygon', 'disk', 'sphere', 'mesh', 'point', 'spot', 'distant', 'environment', 'sky' "
-          "or 'sun'; of the first one.")
+          "Kind of the first light of this name: 'polygon', 'disk', 'sphere', 'mesh', 'point', "
+          "'spot', 'distant', 'environment', 'sky' or 'sun'.")
       .def_property_readonly(
           "count", [](const LightHandle& e) { return e.info().count; },
-          "How many lights of the scene have this name.")
+          "Number of lights in the scene that have this name.")
       .def_property(
           "dimmer", [](const LightHandle& e) { return e.info().dimmer; },
           [](const LightHandle& e, double d) { e.scene->set_dimmer(e.name, d); },
-          "Factor on what they send; 1 as the file has it. At least 0.")
+          "Factor on the emitted light, at least 0. 1 is the light of the file.")
       .def_property(
           "radiance", [](const LightHandle& e) { return e.info().radiance; },
           [](const LightHandle& e, const api::Color& c) { e.scene->set_radiance(e.name, c); },
-          "(r, g, b), undimmed, of the first one; setting it sets all. W/(m2 sr), or cd/m2 where "
-          "Scene.is_photometric; of points and spots W/sr or cd, of distant lights W/m2 or lx; of "
-          "images, skies and measured luminaires a factor.")
+          "(r, g, b) of the first light of this name at dimmer 1. Setting it sets all of them. The "
+          "unit is W/(m2 sr), or cd/m2 if Scene.is_photometric; for points and spots W/sr or cd; "
+          "for distant lights W/m2 or lx. For images, skies and measured luminaires it is a "
+          "factor.")
       .def("__repr__", [](const LightHandle& e) {
         return "<troffer.Light '" + e.name + "' " + e.info().kind + ">";
       });
@@ -58,7 +59,7 @@ void bind_named_lights(SceneClass& scene) {
             for (const std::string& name : s->light_names()) all.push_back({s, name});
             return all;
           },
-          "Lights, one for each name.")
+          "List of the lights, one item per name.")
       .def(
           "light",
           [](const std::shared_ptr<api::Scene>& s, const std::string& name) {
@@ -67,7 +68,8 @@ void bind_named_lights(SceneClass& scene) {
           },
           py::arg("name"), "The lights of this name; ValueError where there are none.")
       .def("dim", &api::Scene::dim, py::arg("name"), py::arg("factor"),
-           "Sets the dimmer of all lights whose name fits; '*' stands for any letters.");
+           "Sets the dimmer of all lights whose names fit the pattern; '*' stands for any "
+           "characters.");
 }
 
 void bind_lamps(SceneClass& scene) {
@@ -80,7 +82,7 @@ void bind_lamps(SceneClass& scene) {
             s.add_light(api::PointLight{name, position, color_taken(intensity, "intensity")});
           },
           py::arg("name"), py::arg("position"), py::arg("intensity"),
-          "Adds a point light. intensity: (r, g, b) or a number, W/sr, or cd where "
+          "Adds a point light. intensity: (r, g, b) or a number in W/sr, or in cd if "
           "Scene.is_photometric.")
       .def(
           "add_spot_light",
@@ -91,7 +93,8 @@ void bind_lamps(SceneClass& scene) {
           },
           py::arg("name"), py::arg("position"), py::arg("direction"), py::arg("intensity"),
           py::kw_only(), py::arg("inner") = 0.0, py::arg("outer") = 45.0,
-          "Adds a spot light. inner, outer: degrees from its axis, between which it fades.")
+          "Adds a spot light. inner, outer: angles from its axis, degrees; the light fades between "
+          "them.")
       .def(
           "add_distant_light",
           [](api::Scene& s, const std::string& name, const api::Point& direction,
@@ -99,8 +102,8 @@ void bind_lamps(SceneClass& scene) {
             s.add_light(api::DistantLight{name, direction, color_taken(irradiance, "irradiance")});
           },
           py::arg("name"), py::arg("direction"), py::arg("irradiance"),
-          "Adds parallel light that takes a direction. irradiance: of a surface that faces it, "
-          "W/m2, or lx where Scene.is_photometric.")
+          "Adds parallel light. direction: the one in which it travels. irradiance: that of a "
+          "surface that faces the light, in W/m2, or in lx if Scene.is_photometric.")
       .def(
           "add_luminaire",
           [](api::Scene& s, const std::string& name, const std::filesystem::path& file,
@@ -113,8 +116,8 @@ void bind_lamps(SceneClass& scene) {
           py::arg("name"), py::arg("file"), py::arg("position"), py::kw_only(),
           py::arg("nadir") = py::none(), py::arg("rotation") = 0.0, py::arg("dimming") = 1.0,
           py::arg("lumens") = py::none(), py::arg("kelvin") = py::none(),
-          "Adds a measured luminaire (.ies, .ldt). nadir: direction, straight down by default; "
-          "rotation: degrees of plane C0 about it, from x.");
+          "Adds a measured luminaire (.ies, .ldt). nadir: a direction; straight down by default. "
+          "rotation: angle of plane C0 about the nadir, in degrees from the x axis.");
 }
 
 void bind_surroundings(SceneClass& scene) {
@@ -125,8 +128,9 @@ void bind_surroundings(SceneClass& scene) {
             s.add_environment(image_of(image), scale, rotation);
           },
           py::arg("image"), py::kw_only(), py::arg("scale") = 1.0, py::arg("rotation") = 0.0,
-          "Adds the light 'environment': (height, width, 3) of linear light over all directions. "
-          "The middle column lies in the east, further right is clockwise seen from above.")
+          "Adds the light 'environment' from an image of all directions: linear light (height, "
+          "width, 3). The middle column shows the east. Columns to its right follow clockwise, "
+          "seen from above.")
       .def(
           "add_sky",
           [](api::Scene& s, const std::string& kind, const std::optional<double>& lux,
@@ -135,10 +139,11 @@ void bind_surroundings(SceneClass& scene) {
           },
           py::arg("kind") = "overcast", py::kw_only(), py::arg("lux") = py::none(),
           py::arg("sun") = py::none(), py::arg("north") = 0.0, py::arg("ground") = 0.2,
-          "Adds the light 'sky' (and 'sun'). kind: 'even', 'overcast', 'clear', 'cie:1' to "
-          "'cie:15'; lux: what the sky gives a horizontal plane; sun: (azimuth, altitude) in "
-          "degrees, clockwise from north, above the horizon; north: degrees by which it lies "
-          "clockwise from the file's; ground: its reflectance.")
+          "Adds the light 'sky', and 'sun' if one is requested. kind: 'even', 'overcast', 'clear', "
+          "'cie:1' to 'cie:15'. lux: illuminance of a horizontal plane by the sky alone. sun: "
+          "(azimuth, altitude) in degrees, clockwise from north and above the horizon. north: "
+          "angle by which north lies clockwise from the file's north, in degrees. ground: "
+          "reflectance of the ground.")
       .def(
           "add_light",
           [](api::Scene& s, const py::kwargs& asked) {

@@ -124,7 +124,7 @@ void bind_material(py::module_& m) {
           [](const MaterialHandle& h, const api::Color& color) {
             h.scene->set_base_color(h.index, color);
           },
-          "(r, g, b), linear, 0 to 1: reflectance.")
+          "Reflectance (r, g, b), linear, 0 to 1.")
       .def("__repr__",
            [](const MaterialHandle& h) { return "<troffer.Material '" + h.name() + "'>"; });
   bind_number(c, "roughness", MaterialNumber::roughness, "0 (a mirror's) to 1.");
@@ -132,9 +132,9 @@ void bind_material(py::module_& m) {
   bind_number(c, "ior", MaterialNumber::ior, "Refractive index, 1 to 100.");
   bind_number(c, "specular", MaterialNumber::specular, "Strength of dielectric gloss, 0 to 1.");
   bind_number(c, "transmission", MaterialNumber::transmission,
-              "Share of diffuse light that passes clearly, 0 to 1.");
+              "Share of light that passes the surface without being scattered, 0 to 1.");
   bind_number(c, "diffuse_transmission", MaterialNumber::diffuse_transmission,
-              "Share that passes and leaves evenly, 0 to 1.");
+              "Share of light that passes the surface and leaves it diffusely, 0 to 1.");
   bind_number(c, "coat", MaterialNumber::coat, "Share that wears a clear coat, 0 to 1.");
   bind_number(c, "coat_roughness", MaterialNumber::coat_roughness, "0 to 1.");
 }
@@ -165,7 +165,7 @@ void bind_materials(py::module_& m, SceneClass& scene) {
             for (size_t i = 0; i < s->material_names().size(); ++i) all.push_back({s, i});
             return all;
           },
-          "All materials.")
+          "List of all materials.")
       .def(
           "material",
           [](const std::shared_ptr<api::Scene>& s, const std::string& name) {
@@ -175,16 +175,16 @@ void bind_materials(py::module_& m, SceneClass& scene) {
       .def("add_image", &add_image, py::arg("pixels"), py::kw_only(), py::arg("srgb") = py::none(),
            py::arg("repeat") = true, py::arg("filtered") = true,
            "Adds an image for materials: (height, width) or (height, width, 1 to 4), uint8 or "
-           "linear floats. srgb: bytes have the sRGB curve (True unless said; False for roughness "
-           "and normals).")
+           "linear floats. srgb: true if bytes have the sRGB curve, which is the default; use "
+           "False for roughness and normals.")
       .def(
           "add_material", &add_material, py::arg("name"), py::arg("model") = "matte",
           "Adds a material. model: 'matte', 'plastic', 'metal', 'mirror', 'principled', 'glass' or "
-          "'thin_glass'. Keywords: base_color, roughness, metallic, ior, specular, "
-          "specular_color, transmission, diffuse_transmission, thin, absorption, coat, "
-          "coat_roughness, coat_ior, sheen_color, sheen_roughness, anisotropy, "
-          "anisotropy_rotation, normal_scale, alpha_cut, back ('shown', 'black', 'unseen'); of "
-          "add_image(): base_color_texture, roughness_texture, metallic_texture, normal_texture.");
+          "'thin_glass'. Keywords: base_color, roughness, metallic, ior, specular, specular_color, "
+          "transmission, diffuse_transmission, thin, absorption, coat, coat_roughness, coat_ior, "
+          "sheen_color, sheen_roughness, anisotropy, anisotropy_rotation, normal_scale, alpha_cut, "
+          "back ('shown', 'black', 'unseen'). Keywords that take a result of add_image(): "
+          "base_color_texture, roughness_texture, metallic_texture, normal_texture.");
 }
 
 }  // namespace troffer::bindings

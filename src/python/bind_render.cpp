@@ -135,21 +135,21 @@ std::unique_ptr<api::Measurements> measure_scene(api::Scene& s, const Points& ar
 void bind_render(SceneClass& scene) {
   scene.def(
       "render", &render_scene, py::arg("camera") = py::none(),
-      "Renders what a camera (a name, or a Camera) sees, as `troffer render` does.\n\n"
-      "Keywords: width, height: pixels, by the camera where 0 (of one alone, the other follows "
-      "from the camera's proportions); crop: (x0, y0, x1, y1); method='certified'; "
-      "indirect='auto'; error=0.01: allowed error of a pixel, relative; spp, max_spp: viewing rays "
-      "of a pixel; shadow_rays; depth=-1; threads=0; seed=0; time_limit: seconds; error_limit; "
-      "aovs: layers besides the picture ('albedo' 'normal' 'depth' 'position' 'direct' 'indirect' "
-      "'error' ...); progress: called with the fraction done, from this thread; False stops.\n"
-      "Of the method kj92: variance, most_rays, mean_change, level_difference, probe_rays, "
-      "coherence, ratio, selection, select.\n\n"
-      "Other threads run meanwhile; Ctrl-C raises KeyboardInterrupt.");
+      "Renders what a camera (a name, or a Camera) sees, as `troffer render` does.\n\nKeywords: "
+      "width, height: pixels; 0 takes the camera's size, and one alone keeps the camera's "
+      "proportions. crop: (x0, y0, x1, y1). method='certified'. indirect='auto'. error=0.01: "
+      "allowed relative error of a pixel. spp, max_spp: viewing rays per pixel. shadow_rays. "
+      "depth=-1. threads=0. seed=0. time_limit: seconds. error_limit. aovs: layers besides the "
+      "picture ('albedo' 'normal' 'depth' 'position' 'direct' 'indirect' 'error' ...). progress: a "
+      "function that this thread calls with the finished fraction; it stops the rendering by "
+      "returning False.\nKeywords for the method kj92: variance, most_rays, mean_change, "
+      "level_difference, probe_rays, coherence, ratio, selection, select.\n\nOther Python threads "
+      "run during the rendering. Ctrl-C raises KeyboardInterrupt.");
   scene.def("measure", &measure_scene, py::arg("points"),
-            "Illuminance at points, float64 (n, 6): x, y, z in metres and the normal of the side "
-            "that is lit; or (n, 3): facing up. As `troffer measure` finds it.\n\n"
-            "Keywords: method, indirect, error, spp, depth, threads, seed, progress and those of "
-            "the method kj92, as of render().");
+            "Returns the illuminance at points, as `troffer measure` does. points: float64 (n, 6), "
+            "x, y, z in metres and the normal of the lit side; or (n, 3), which face "
+            "up.\n\nKeywords: method, indirect, error, spp, depth, threads, seed, progress and "
+            "those for the method kj92, as in render().");
 }
 
 }  // namespace troffer::bindings

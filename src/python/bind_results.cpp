@@ -74,24 +74,25 @@ py::dict stats_of(const api::Picture& picture) {
 
 void bind_picture(py::module_& m) {
   py::class_<api::Picture>(m, "Picture", "What Scene.render() makes.")
-      .def_property_readonly("pixels", &pixels_of,
-                             "float32 (height, width, 3), row 0 on top, linear light; a view, not "
-                             "a copy.")
+      .def_property_readonly(
+          "pixels", &pixels_of,
+          "Linear light, float32 (height, width, 3), row 0 on top. It is a view, not a copy.")
       .def("__getitem__", &layer_named, py::arg("layer"),
-           "A layer that was asked for (aovs=): float32 (height, width, 3) or (height, width), a "
-           "view.")
+           "Returns a requested layer (aovs=) as a view: float32 (height, width, 3) or (height, "
+           "width).")
       .def("__array__", &as_array, py::arg("dtype") = py::none(), py::arg("copy") = py::none(),
-           "The pixels, for numpy.asarray().")
+           "Returns the pixels, for numpy.asarray().")
       .def_property_readonly("layers", &api::Picture::layer_names,
                              "Names of the layers besides the picture.")
       .def_property_readonly(
           "error", [](const api::Picture& p) { return p.statistics().estimated_error; },
-          "The estimated error of the picture: root mean square of the pixels' standard errors, "
-          "over the mean luminance.")
+          "Estimated error of the picture: root mean square of the pixels' standard errors, "
+          "divided by the mean luminance.")
       .def_property_readonly("is_complete", &api::Picture::is_complete,
                              "False after a stop or a time limit.")
-      .def_property_readonly("stats", &stats_of,
-                             "A dict of how it was made: seconds, rays, errors, cache cells.")
+      .def_property_readonly(
+          "stats", &stats_of,
+          "Dict of statistics of the rendering: seconds, rays, errors, cache cells.")
       .def(
           "save",
           [](const api::Picture& p, const std::filesystem::path& path,
@@ -100,8 +101,8 @@ void bind_picture(py::module_& m) {
           },
           py::arg("path"), py::kw_only(), py::arg("exposure") = py::none(),
           py::arg("filmic") = true,
-          "Writes .png (exposure in stops, by itself without; filmic: with a tone map), .exr (with "
-          "all layers), .hdr or .pfm (linear).")
+          "Writes the picture as .png, .exr (with all layers), .hdr or .pfm (linear). exposure: "
+          "stops, for .png; chosen automatically if it is left out. filmic: applies a tone map.")
       .def("_repr_png_", &png_of, "The picture as notebooks show it.")
       .def("__repr__", [](const api::Picture& p) {
         return "<troffer.Picture " + std::to_string(p.width()) + " x " +
@@ -122,11 +123,12 @@ void bind_measurements(py::module_& m) {
       .def_property_readonly(
           "illuminance",
           [](const py::object& self) { return column(self, &api::Measurement::illuminance); },
-          "float64 (n,), lx.")
+          "Illuminance in lx, float64 (n,).")
       .def_property_readonly(
           "standard_error",
           [](const py::object& self) { return column(self, &api::Measurement::standard_error); },
-          "float64 (n,), lx: illuminance +- 1.96 of these holds the true value 95 times of 100.")
+          "Standard error of the illuminance in lx, float64 (n,). 95 % of the intervals of 1.96 "
+          "standard errors around it contain the true value.")
       .def_property_readonly(
           "irradiance",
           [](const py::object& self) {
@@ -136,7 +138,7 @@ void bind_measurements(py::module_& m) {
                 {py::ssize_t(values.size()), py::ssize_t(3)},
                 {py::ssize_t(sizeof(api::Measurement)), py::ssize_t(sizeof(float))}, first, self);
           },
-          "float32 (n, 3): W/m2 by channel, or lx where Scene.is_photometric.")
+          "Irradiance of each channel in W/m2, or in lx if Scene.is_photometric, float32 (n, 3).")
       .def_readonly("is_complete", &api::Measurements::is_complete, "False after a stop.")
       .def("__len__", [](const api::Measurements& r) { return r.values.size(); });
 }

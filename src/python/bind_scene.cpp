@@ -17,11 +17,11 @@ void bind_facts(SceneClass& scene) {
   scene
       .def_property_readonly(
           "file", [](const api::Scene& s) { return s.file(); },
-          "The path that load() was given; '' for a built scene.")
+          "Path that was passed to load(); '' for a built scene.")
       .def_property_readonly("warnings", &api::Scene::warnings,
-                             "What was odd in the file, in words.")
+                             "Warnings about the file, one string each.")
       .def_property_readonly("is_photometric", &api::Scene::is_photometric,
-                             "Light is in cd/m2 (glTF), not in W/(m2 sr).")
+                             "True if light is in cd/m2 (glTF), false if it is in W/(m2 sr).")
       .def_property_readonly("triangles", &api::Scene::triangle_count, "Number of triangles.")
       .def_property_readonly("up", &api::Scene::up, "(x, y, z): the upward direction.")
       .def_property_readonly("cameras", &api::Scene::camera_names, "Names of the cameras.")
@@ -32,9 +32,10 @@ void bind_facts(SceneClass& scene) {
             return py::make_tuple(py::make_tuple(lower[0], lower[1], lower[2]),
                                   py::make_tuple(upper[0], upper[1], upper[2]));
           },
-          "((x, y, z), (x, y, z)): the lower and the upper corner, metres.")
+          "Lower and upper corner in metres: ((x, y, z), (x, y, z)).")
       .def("camera", &api::Scene::camera, py::arg("name") = "",
-           "The camera of this name; else the first one, or one that frames the scene.")
+           "Returns the camera of this name. Without a name, returns the first camera, or one that "
+           "frames the scene if it has none.")
       .def("__repr__", [](const api::Scene& s) { return "<troffer.Scene '" + s.file() + "'>"; });
 }
 
@@ -51,9 +52,9 @@ void bind_load(py::module_& m) {
       py::arg("file"), py::kw_only(), py::arg("variant") = py::none(), py::arg("time") = py::none(),
       py::arg("animation") = py::none(), py::arg("emission_scale") = 1.0, py::arg("baked") = false,
       "Loads a scene from a path (str or os.PathLike): .gltf .glb .pbrt .obj .stl .ply .xml "
-      "(Mitsuba) or .rad. variant: of glTF's materials; time: seconds into the animation; "
-      "emission_scale: factor on what surfaces of the file emit; baked: show the light that "
-      "`troffer bake` wrote. Raises InputError.");
+      "(Mitsuba) or .rad. variant: name of a set of glTF materials. time: seconds into the "
+      "animation. emission_scale: factor on the emission of the file's surfaces. baked: shows the "
+      "light that `troffer bake` wrote. Raises InputError.");
 }
 
 }  // namespace
@@ -61,17 +62,17 @@ void bind_load(py::module_& m) {
 void bind_scene(py::module_& m) {
   py::class_<api::Camera>(m, "Camera", "What a picture is seen from: look_at(), Scene.camera().")
       .def_property_readonly(
-          "name", [](const api::Camera& c) { return c.name(); }, "Its name in the scene, or ''.");
-  SceneClass scene(m, "Scene",
-                   "A scene: load(), or Scene() to build one from arrays. What is changed counts "
-                   "from the next rendering or measurement on. Not for use from several threads at "
-                   "once.");
+          "name", [](const api::Camera& c) { return c.name(); }, "Name in the scene, or ''.");
+  SceneClass scene(
+      m, "Scene",
+      "A scene, made by load(), or built from arrays with Scene(). A change takes effect in the "
+      "next rendering or measurement. Several threads must not use a scene at the same time.");
   scene.def(py::init([](const api::Point& up, bool is_photometric) {
               return std::make_shared<api::Scene>(api::SceneOptions{up, is_photometric});
             }),
             py::kw_only(), py::arg("up") = api::Point{0, 0, 1}, py::arg("photometric") = true,
-            "An empty scene. photometric: light is in cd/m2, cd and lx, else in W/(m2 sr), W/sr "
-            "and W/m2.");
+            "Makes an empty scene. photometric: light is in cd/m2, cd and lx; otherwise it is in "
+            "W/(m2 sr), W/sr and W/m2.");
   bind_facts(scene);
   bind_lights(m, scene);
   bind_materials(m, scene);

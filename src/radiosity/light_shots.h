@@ -27,7 +27,7 @@ class LightShots {
   // Computes the transfers of a light. Does nothing for a light without a surface, or once `stop`
   // is set.
   LightShot shoot(uint32_t light, bool is_closed, const StopFlag& stop);
-  std::span<const Transfer> transfers() const { return transfers_; }  // of the last shot, per point
+  std::span<const Transfer> transfers() const { return transfers_; }  // last shot, per point
   uint64_t rays() const;
 
  private:

@@ -34,7 +34,7 @@ void add_mesh_warnings(const RadiositySolution& s, std::vector<std::string>& out
 }  // namespace
 
 std::vector<std::string> radiosity_warnings(const RadiositySolution& s) {
-  constexpr double allowed = 0.01;  // of the emitted power
+  constexpr double allowed = 0.01;  // share of the emitted power
   const EnergyBalance& b = s.balance;
   std::vector<std::string> out;
   const auto percent = [&](double part) { return 100 * part / b.emitted; };

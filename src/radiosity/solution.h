@@ -26,7 +26,7 @@ struct RadiosityOptions {
   uint32_t max_shots = 20000;       // limits of effort;
   uint32_t max_million_rays = 400;  // if one is reached, RadiosityEnd says so
   int max_rays = 64;                // per sample point and shooter
-  float tolerance = 0.003f;         // of one transfer, relative to the scene's mean irradiance
+  float tolerance = 0.003f;  // error of one transfer, relative to the scene's mean irradiance
   // Minimum number of well-distributed rays to lights whose unoccluded light exceeds `light_share`
   // of the mean irradiance. All of them are traced; 0: as for patches.
   int light_rays = 64;

@@ -55,7 +55,7 @@ struct Header {
   double balance[7];
   uint32_t patches;
   float mean_irradiance;
-  uint64_t hash;  // of everything else: header with 0 here, and body
+  uint64_t hash;  // hash of everything else: header with 0 here, and body
 };
 static_assert(sizeof(Header) == 208);
 

@@ -85,7 +85,7 @@ class StoredLists {
   RadiositySolution& solution_;
   const std::vector<ReceiverBlock>& blocks_;
   size_t slots_;
-  std::vector<uint32_t> sources_;  // of solution_.stored, entry by entry: [entry][slot]
+  std::vector<uint32_t> sources_;  // sources of solution_.stored, entry by entry: [entry][slot]
   std::vector<float> least_;       // per slot: importance below which no new contribution is stored
   std::vector<uint32_t> block_;    // per point
   std::vector<float> least_in_block_;

@@ -23,7 +23,7 @@ class ViewingCamera {
   // Returns the footprint of one of `rays` rays of a pixel: 1 / √rays of the pixel's width, at
   // least an eighth. The mean of the rays is then blurred by no more than a pixel.
   RayCone cone(int rays) const;
-  int longer_side() const { return longer_side_; }  // of the image, pixels
+  int longer_side() const { return longer_side_; }  // pixels
   bool has_lens() const { return camera_.lens_radius > 0; }
   bool is_perspective() const { return camera_.kind == CameraKind::perspective; }
   // Returns the unit vector from a point to the eye.

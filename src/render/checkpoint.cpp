@@ -22,7 +22,7 @@ struct Header {
   uint32_t unused;
   char program[16];  // version of the program, padded with zeros
   uint64_t settings, scene, preparation;
-  uint64_t hash;  // of all other fields
+  uint64_t hash;  // hash of all other fields
 };
 static_assert(sizeof(Header) == 72);
 

@@ -25,7 +25,7 @@ struct PixelRect {
 // Current estimate for a pixel.
 struct PixelEstimate {
   uint32_t samples = 0;
-  double luminance = 0, standard_error = 0;  // of the pixel
+  double luminance = 0, standard_error = 0;  // mean and standard error of the pixel
   // Mean difference between samples and their known radiance, and its standard error. Equal to the
   // values above if no known radiance is kept (Film::expect_surrogates).
   double rest = 0, error_of_rest = 0;

@@ -15,10 +15,15 @@ namespace {
 constexpr size_t looked_from = 64, rays_each = 32;
 constexpr float room_share = 0.65f;
 
-// True if the ray meets the front of a triangle. Disks count from both sides, spheres never.
+// True if the ray meets the front of a triangle or sphere. Disks count from both sides.
 bool meets_front(const Scene& scene, const Ray& ray, const Hit& hit) {
   if (!hit.is_valid()) return false;
-  if (!is_mesh(scene, hit.geometry)) return hit.geometry > scene.meshes.size();
+  if (hit.geometry == scene.meshes.size()) {
+    const Sphere& sphere = scene.spheres[hit.primitive];
+    const bool is_inside = length(ray.origin - sphere.centre) < sphere.radius;
+    return is_inside == sphere.is_inside_out;
+  }
+  if (!is_mesh(scene, hit.geometry)) return true;
   const auto [a, b, c] = mesh_at(scene, hit.geometry).corners(hit.primitive);
   return dot(cross(b - a, c - a), ray.direction) < 0;
 }

@@ -4,12 +4,13 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "render/sample_spread.h"
 
 namespace troffer {
 
 namespace {
 
-// Variance of one ray over the squared allowed error, summed over the test pixels.
+// Mean over the test pixels of the variance of one ray over the squared allowed error.
 double variance_of(std::span<const TestPixel> pixels, const TestedWay& tested) {
   const size_t rays = tested.luminances.size() / pixels.size();
   double variance = 0, missing = 0;
@@ -25,27 +26,27 @@ double variance_of(std::span<const TestPixel> pixels, const TestedWay& tested) {
     missing += (pixels[p].luminance - sum / n) / pixels[p].allowed;
   }
   const auto count = double(pixels.size());
-  return variance +
-         sqr(std::max(missing, 0.0) / count) * double(tested.luminances.size()) / 3 * count;
+  return variance / count +
+         sqr(std::max(missing, 0.0) / count) * double(tested.luminances.size()) / 3;
 }
 
 }  // namespace
 
 FurtherChoice choose_further_way(std::span<const TestPixel> pixels,
-                                 std::span<const TestedWay> tested) {
+                                 std::span<const TestedWay> tested, double most_even) {
   TROFFER_CHECK(!pixels.empty() && !tested.empty());
-  constexpr double least_times = 0.25;  // a few test rays cannot show less
-  double of_first = 0;
-  for (const TestPixel& p : pixels) of_first += p.variance / sqr(p.allowed);
-  FurtherChoice best{tested.front().way, 1};
-  if (!(of_first > 0)) return best;
+  double planned = 0;
+  for (const TestPixel& p : pixels) planned += p.planned / double(pixels.size());
+  TROFFER_CHECK(planned > 0);
+  FurtherChoice best{tested.front().way};
   double least = 0;
   for (const TestedWay& t : tested) {
-    const double times = std::max(variance_of(pixels, t) / of_first, least_times);
-    if (least > 0 && times * t.cost >= least) continue;
-    least = times * t.cost;
-    best = {t.way, times, true};
+    const double variance = variance_of(pixels, t), work = variance * t.cost;
+    if (best.is_tested && work >= least) continue;
+    least = work;
+    best = {t.way, true, samples_for({.chance = variance}, 1, most_even, 0), 1};
   }
+  best.times = best.rays / planned;
   return best;
 }
 

@@ -27,8 +27,9 @@ constexpr uint32_t test_rays_of_pixel = 8;
 
 struct FurtherChoice {
   FurtherWay way;
-  double times = 1;  // further rays, relative to the number that first rays would need
   bool is_tested = false;
+  double rays = 0;   // if tested: further rays of a pixel of the tile
+  double times = 1;  // the same over the number that was planned for the test pixels
 };
 
 // Luminances of the test rays of one way, pixel by pixel, and their cost (costs.h).
@@ -38,18 +39,19 @@ struct TestedWay {
   double cost = 0;
 };
 
-// A test pixel, as the first pass left it. Luminance and variance exclude known radiance if the
-// luminances of test rays do.
+// A test pixel, as the first pass left it.
 struct TestPixel {
+  // Without known radiance if the luminances of test rays are.
   double luminance = 0;
-  double variance = 0;  // of one first ray
-  double allowed = 1;   // error of the pixel
+  double allowed = 1;  // error of the pixel
+  double planned = 0;  // further rays
 };
 
 // Returns the way of least cost for a given error. Light that the first rays have seen and the test
 // rays have not is taken to come in rare, bright rays: of n test rays that all missed it, it has a
 // variance of at least n / 3 times its square (the 95 % limit of its chance is 3 / n).
+// most_even: as in samples_for() (sample_spread.h).
 FurtherChoice choose_further_way(std::span<const TestPixel> pixels,
-                                 std::span<const TestedWay> tested);
+                                 std::span<const TestedWay> tested, double most_even);
 
 }  // namespace troffer

@@ -40,6 +40,7 @@ class FurtherRays {
               const RenderOptions& options, const TilePlan& plan);
 
   bool is_refined() const { return records_.has_value(); }
+  double most_even() const { return double(options_.most_even); }
   int first_spp() const { return first_spp_; }
   const TileSteps& steps() const { return steps_; }
   // True if pixels get surrogate samples and corrections at the outlines of lamps.

@@ -20,7 +20,7 @@ double variance_of_sample(const PointLight& p) {
 
 // Means over the points of a list.
 struct Usual {
-  double variance = 0;           // of one sample, lx²
+  double variance = 0;           // variance of one sample, lx²
   double relative_variance = 0;  // variance of one sample over the square of the point's light
   double kurtosis = normal_kurtosis;
 };

@@ -251,7 +251,7 @@ double variance_amid_clutter(const RefinementView& v, int x, int y, double of_sl
                              const Of& of) {
   constexpr int reach = 2;
   static_assert(reach <= PixelLooks::reach);
-  constexpr double rays = 32;  // of eight neighbours, four each
+  constexpr double rays = 32;  // those of eight neighbours, four each
   // If a share p of a pixel differs by c, the variance is p (1 - p) c². Its mean over p is c² / 6.
   constexpr double squares_of_variance = 6;
   int all = 0, varying = 0;

@@ -264,6 +264,7 @@ void Picture::render(const Preparation* preparation, RenderResult& result) {
   RenderStatistics& statistics = result.statistics;
   statistics.cells = cells.statistics;
   for (PlannedPart& d : cells.decisions) statistics.plan.parts.push_back(std::move(d));
+  statistics.preparation = cells.counters;
   if (cells.quick) fill_gaps_by(std::move(cells.quick), cells.statistics.unresolved);
   if (!integrator) return;
   statistics.is_by_paths = integrator->sampling().is_by_noise();

@@ -107,7 +107,8 @@ struct ViewingErrors {
 
 struct RenderStatistics {
   int width = 0, height = 0;
-  Counters counters;
+  Counters counters;     // work of viewing rays
+  Counters preparation;  // work of cells, gathers and forecasts; this process's share
   ViewingErrors viewing_errors;
   // Root mean square of layer `error` over the picture's mean luminance.
   double estimated_error = 0;

@@ -174,7 +174,7 @@ double Rendering::share_done() const {
 
 Counters Rendering::counters() const {
   Counters sum = book_.counters();
-  for (const TileWork& w : work_) sum += w.counters;  // of interrupted tiles
+  for (const TileWork& w : work_) sum += w.counters;  // work of interrupted tiles
   return sum;
 }
 

@@ -12,7 +12,7 @@ namespace troffer {
 
 struct SeenPoint {
   MeasuringPoint point;  // in the file's coordinates; unit normal on the visible side
-  std::string name;      // of the mesh; empty for spheres, disks and unnamed meshes
+  std::string name;      // name of the mesh; empty for spheres, disks and unnamed meshes
 };
 
 // Returns the first surface, other than panes of clear glass, on the ray through a raster position.

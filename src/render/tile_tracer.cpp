@@ -136,16 +136,17 @@ TestPixel TileTracer::test_pixel(const Pixel2& p, const TileWork& w) const {
   const PixelEstimate e = film_.estimate(p.x, p.y);
   const bool has_known = further_.at(p.x, p.y).surrogates > 0;
   return {has_known ? e.rest : e.luminance,
-          sqr(has_known ? e.error_of_rest : e.standard_error) * e.samples,
           allowed_error(options_.error, e.luminance,
-                        std::max(double(w.rays.request.typical_luminance), 1e-30))};
+                        std::max(double(w.rays.request.typical_luminance), 1e-30)),
+          double(further_.at(p.x, p.y).samples) - further_.first_spp()};
+};
 }
 
 // Tests all ways at a few pixels of a tile that wants many further rays.
 FurtherChoice TileTracer::choose_way(const PixelRect& tile, TileWork& w) {
   if (!further_.has_surrogates()) return {};
   const std::vector<Pixel2> pixels = pixels_to_test(tile);
-  if (pixels.empty()) return {further_ways.front(), 1};
+  if (pixels.empty()) return {further_ways.front()};
   const uint64_t seed = hash_of(options_.seed, stream::further_test);
   std::vector<TestPixel> before;
   for (const Pixel2& p : pixels) before.push_back(test_pixel(p, w));
@@ -174,14 +175,7 @@ FurtherChoice TileTracer::choose_way(const PixelRect& tile, TileWork& w) {
   w.rays.clear();
   w.pixels.clear();
   w.rays.request.effort_divisor = 1;
-  return choose_further_way(before, tested);
-}
-
-// Returns the mean number of further rays of these pixels.
-double TileTracer::shared_rays(const std::vector<Pixel2>& pixels) const {
-  double sum = 0;
-  for (const Pixel2& p : pixels) sum += further_.at(p.x, p.y).samples - further_.first_spp();
-  return sum / double(pixels.size());
+  return choose_further_way(before, tested, further_.most_even());
 }
 
 bool TileTracer::further_rays(const PixelRect& tile, TileWork& w) {
@@ -192,12 +186,13 @@ bool TileTracer::further_rays(const PixelRect& tile, TileWork& w) {
     w.pixels.clear();
   };
   std::vector<Pixel2> pixels = pixels_in_order(tile);
-  const double shared = choice.is_tested ? shared_rays(pixels) : 0;
+  // The plan of a pixel comes from few rays around it, and that of a tile from few pixels: both
+  // count.
   const auto wanted = [&](const Pixel2& p) {
     constexpr double most = 1 << 16;
     const double first = further_.first_spp(), own = further_.at(p.x, p.y).samples - first,
-                 planned = choice.is_tested ? 0.5 * (own + shared) : own;
-    return uint32_t(std::min(first + std::ceil(planned * choice.times), most));
+                 rays = choice.is_tested ? 0.5 * (own * choice.times + choice.rays) : own;
+    return uint32_t(std::min(first + std::ceil(rays), most));
   };
   std::stable_sort(pixels.begin(), pixels.end(), [&](const Pixel2& a, const Pixel2& b) {
     return further_.error_scale(wanted(a)) < further_.error_scale(wanted(b));

@@ -63,7 +63,6 @@ class TileTracer {
   void trace(const FurtherWay& way, TileWork& w);
   std::vector<Pixel2> pixels_to_test(const PixelRect& tile) const;
   TestPixel test_pixel(const Pixel2& p, const TileWork& w) const;
-  double shared_rays(const std::vector<Pixel2>& pixels) const;
   FurtherChoice choose_way(const PixelRect& tile, TileWork& w);
   Rgb edge_correction(const TileWork& w, size_t ray) const;
 

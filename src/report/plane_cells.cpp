@@ -192,7 +192,7 @@ class Builder {
   std::vector<SlabLine> lines_;
   std::vector<Growing> below_;                              // cells of the slab below
   std::map<std::pair<size_t, size_t>, size_t> cell_below_;  // key: the lines at its left and right
-  int cover_ = 0, solid_ = 0;                               // of the current cell
+  int cover_ = 0, solid_ = 0;                               // samples of the current cell
   PlaneCells out_;
 };
 

@@ -106,6 +106,11 @@ inline bool is_delta(LightKind k) {
   return k == LightKind::point || k == LightKind::spot || k == LightKind::distant;
 }
 
+// True if the light emits anything. A sky of which only the sun is left still has a ground.
+inline bool emits(const Light& e) {
+  return !e.radiance.is_black() || (e.kind == LightKind::sky && !e.sky.ground.is_black());
+}
+
 // Calls visit(v) for the numbers, vectors and colours that define a light. Leaves out its name and
 // its triangle list, which Mesh::lights holds too.
 template <class Visit>

@@ -81,7 +81,7 @@ void for_each_mesh(const Scene& scene, const Visit& visit) {
 Instance make_instance(uint32_t number, const Affine& world_from_mesh, std::string name,
                        const Vec3& reach, const Box& bounds);
 Vec3 reach_of(const Mesh& mesh);  // largest absolute coordinate per axis
-Box bounds_in_world(const Mesh& mesh, const Affine& world_from_mesh);  // of all vertices
+Box bounds_in_world(const Mesh& mesh, const Affine& world_from_mesh);  // box of all vertices
 
 // True if rays can be transformed to a mesh and back without losing more than a few times the
 // rounding error of world space. False for singular, nearly singular and infinite transforms.

@@ -15,7 +15,7 @@ namespace troffer {
 // One convex polygon of a mesh that mirrors on one side.
 struct FlatMirror {
   Vec3 normal;                // unit, on the mirroring side
-  float height = 0;           // of the plane along the normal, m
+  float height = 0;           // height of the plane along the normal, m
   float tolerance = 0;        // metres; points closer to the plane count as in it
   std::vector<Vec3> outline;  // convex, of either orientation
   uint32_t mesh = 0;

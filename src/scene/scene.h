@@ -46,7 +46,7 @@ struct Instance {
   Affine world_from_mesh;  // invertible
   bool is_mirrored = false;
   float reach = 0;  // metres: coordinate that bounds a ray's rounding error to the mesh and back
-  Box bounds;       // of all triangles, in the world
+  Box bounds;       // bounds of all triangles, in the world
 };
 
 // A whole sphere; its front is outside unless is_inside_out.

@@ -62,13 +62,13 @@ struct TexturePlace {
 // Constant factor times an optional texture.
 struct TextureOperand {
   Rgb value{1};
-  int32_t texture = -1;  // of lower index; -1: none
+  int32_t texture = -1;  // index, lower than this texture's; -1: none
 };
 
 // An image at reduced size.
 struct TextureLevel {
   int width = 0, height = 0;
-  size_t first = 0;       // of the level in levels_float or levels8
+  size_t first = 0;       // start of the level in levels_float or levels8
   bool is_float = false;  // stored in levels_float
 };
 

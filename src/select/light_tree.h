@@ -84,7 +84,7 @@ class LightTree {
   // Four children side by side; unused ones have zero power.
   struct alignas(16) Node {
     Lanes centre_x{}, centre_y{}, centre_z{};
-    Lanes radius_squared{};              // of the sphere around the bounds
+    Lanes radius_squared{};              // squared radius of the sphere around the bounds
     Lanes axis_x{}, axis_y{}, axis_z{};  // axis of the cone that contains all normals
     Lanes cos_spread{}, sin_spread{};    // half angle of that cone
     Lanes power{};

@@ -32,7 +32,7 @@ namespace troffer {
 // changes the answers of the next call.
 struct CertifiedMemory {
   std::vector<float> unoccluded;      // per receiver, of the current source, sr
-  std::vector<float> all_unoccluded;  // of all requests, one after the other, sr
+  std::vector<float> all_unoccluded;  // unoccluded light of all requests, one after the other, sr
   std::vector<uint32_t> order;        // requests, strongest first
   std::vector<float> light;           // per receiver: brightness × visible light so far, sr
   std::vector<float> done;  // per receiver: brightness × unoccluded light of requests so far
@@ -47,7 +47,7 @@ struct CertifiedMemory {
   bool is_cast_in_parts = false;  // true if the cluster's rays are cast in several batches
   RayQueue queue;
   RayMemory rays;
-  std::vector<SourceVisibility> answers;  // of the current source
+  std::vector<SourceVisibility> answers;  // answers of the current source
   std::vector<SourceVisibility> waiting;  // answers of requests that wait for rays
   double far_open = 0.5;                  // estimated share of the light from infinity that arrives
   // parts of sources at infinity that the last call did not answer; the caller samples them

@@ -184,7 +184,7 @@ struct CoverageMask {
 // Sums of weights over a mask. The unit is common to all masks of one receiver and cell.
 struct MaskWeight {
   float all = 0, open = 0;
-  float pair_squares = 0;  // of weights, once per pair of neighbours that differ
+  float pair_squares = 0;  // sum of squared weights, once per pair of neighbours that differ
   // Pairs of neighbours of which exactly one is open, in a row and in a column; all pairs.
   int row_pairs = 0, column_pairs = 0, neighbours = 0;
   int inside_count = 0, open_count = 0;

@@ -22,7 +22,7 @@ namespace troffer {
 struct DirectRayMemory {
   std::vector<FlatCell> cells;
   std::vector<float> unoccluded;  // per cell and receiver, sr
-  std::vector<float> values;      // of a cell per receiver, or of one receiver's rays
+  std::vector<float> values;      // those of a cell per receiver, or of one receiver's rays
   SobolBlocks blocks;
   std::vector<float> block, numbers;
   LightPoints points;

@@ -14,8 +14,8 @@ namespace troffer {
 // Some receivers, a part of a source, and the facets that may hide it.
 struct SourcePart {
   std::vector<uint32_t> members;
-  ReceiverHull hull;     // of the members
-  FlatCell cell;         // of flat sources
+  ReceiverHull hull;     // hull of the members
+  FlatCell cell;         // source cell, for flat sources
   bool is_whole = true;  // the part is all of the source above a common horizon
   std::vector<FacetToAdd> facets;
   std::vector<RoundBody> rounds;

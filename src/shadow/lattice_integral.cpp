@@ -53,7 +53,7 @@ struct LatticeSum {
   double weight = 0, r = 0, g = 0, b = 0;
   // of the four sublattices of every other row and column: weights, and luminance times weight
   double part_weights[4] = {}, parts[4] = {};
-  double squares = 0;  // of weight × second difference along a row
+  double squares = 0;  // sum of squares of weight × second difference along a row
 
   Rgb mean() const { return Rgb{float(r), float(g), float(b)} * float(1 / weight); }
   double variance_of_mean() const;

@@ -16,7 +16,7 @@ namespace troffer {
 // Working memory of the functions below.
 struct MaskMemory {
   CoverageMask mask;
-  OpenSamples samples;  // of the last receiver
+  OpenSamples samples;  // samples of the last receiver
   std::vector<Vec3> points;
   std::vector<Rgb> values;
   LatticeMemory lattice;

@@ -50,8 +50,11 @@ float variation_along(const MaskLattice& lattice, const MaskWeights& w, EdgesAlo
 // Returns the variance of the share, in squared weights of samples, for edges along one side of the
 // source.
 //
-// Each edge separates one pair of samples that are consecutive across it and errs by 1/12 sample²,
-// or more if other edges are in step with it. Consecutive samples lie apart along the edge, so the
+// Each edge separates one pair of samples that are consecutive across it. The count behind a single
+// edge at a random place x has the variance f (1 - f), f the fraction of n x: 1/6 sample² on
+// average. Both edges of a bar together have that variance, 1/12 each, because the shift of the
+// lattice moves both counts alike. `of_edge` lies near the single edge; more edges in step with
+// each other are part of the disorder below. Consecutive samples lie apart along the edge, so the
 // variation of weights along it adds to that, up to the error of an edge of any direction.
 //
 // Irregular edges closer together than samples have the variance of independent samples. Pairs one

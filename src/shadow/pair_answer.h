@@ -18,8 +18,8 @@ struct SourceVisibility {
   float unoccluded = 0;      // projected solid angle, sr
   float visible = 0;         // visible share of it
   float variance = 0;        // estimated variance of `visible`
-  Rgb value;                 // of the integrand, if the receiver has one
-  float value_variance = 0;  // of its luminance
+  Rgb value;                 // value of the integrand, if the receiver has one
+  float value_variance = 0;  // variance of its luminance
   uint32_t rays = 0;         // rays cast for it
   ShadowAnswer answer = ShadowAnswer::below;
 };
@@ -31,7 +31,7 @@ constexpr uint8_t answer_bit(ShadowAnswer a) {
 // Sum over the cells of a source, without rays.
 struct CellSum {
   float light = 0;       // unoccluded light of a cell × its visible share, sr
-  float variance = 0;    // of `light`, sr²
+  float variance = 0;    // variance of `light`, sr²
   float unoccluded = 0;  // light of the cells that have an answer, sr
   Rgb value;
   float value_variance = 0;
@@ -77,8 +77,8 @@ struct RayAnswer {
   uint32_t source = 0, member = 0, rays = 0;
   float light = 0;           // open projected solid angle that they found, sr
   float light_variance = 0;  // sr²
-  Rgb value;                 // of an integrand
-  float value_variance = 0;  // of its luminance
+  Rgb value;                 // value of an integrand
+  float value_variance = 0;  // variance of its luminance
 };
 // Adds the result of rays to an answer.
 inline void add_rays(const RayAnswer& rays, SourceVisibility& a) {

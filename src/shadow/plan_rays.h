@@ -19,7 +19,7 @@ namespace troffer {
 // Rays of one pair: segments [first, first + count).
 struct RayGroup {
   uint32_t member, source, first, count;
-  uint32_t frame, passes;  // of open samples: index of the frame, number of masks
+  uint32_t frame, passes;  // open samples: index of their frame, number of masks
   bool has_values;         // values from `first_value` on belong to the rays
   uint32_t first_value;
   float light;                 // total light of these rays, sr

@@ -16,7 +16,7 @@ namespace troffer {
 
 // A source as its rays need it.
 struct RaySource {
-  Vec3d point, normal;   // of its plane, for flat sources; normal towards the receivers
+  Vec3d point, normal;   // its plane, for flat sources; the normal is towards the receivers
   double tolerance = 0;  // height above the plane that still counts as the source, metres
   bool is_round = false;
   Vec3d centre;  // round sources: rays end where they first meet this sphere
@@ -51,10 +51,10 @@ struct RayQueue {
   };
 
   std::vector<RaySource> sources;  // all of the cluster, also those without rays
-  std::vector<MaskFrame> frames;   // of cells with rays
+  std::vector<MaskFrame> frames;   // frames of cells with rays
   std::vector<OpenPair> open;
   std::vector<PointPair> by_points;
-  std::vector<Vec3> points;  // of by_points
+  std::vector<Vec3> points;  // sample points of by_points
   std::vector<Rgb> values;   // at the points
 
   void clear();

@@ -16,10 +16,10 @@ namespace troffer {
 struct PartMemory {
   std::vector<PlannedCell> cells;
   PilotMemory pilots;
-  std::vector<float> unoccluded;  // of a cell, per receiver, sr
+  std::vector<float> unoccluded;  // unoccluded light of a cell, per receiver, sr
   std::vector<uint32_t> members;  // receivers that the cell reaches
   FacetList masked;
-  ReceiverTree receivers, some_receivers;  // of the part; of a cell that reaches fewer of them
+  ReceiverTree receivers, some_receivers;  // those of the part; those of a cell that reaches fewer
   SettleMemory settle;
   DirectRayMemory rays;
 };

@@ -30,7 +30,7 @@ struct ShadowReceiver {
 struct ShadowCluster {
   std::span<const ShadowReceiver> receivers;  // at least one; owned by the caller
   ReceiverArrays arrays;                      // positions and normals as separate coordinates
-  ReceiverHull hull;                          // of all receivers
+  ReceiverHull hull;                          // hull of all receivers
   bool has_own_horizons = false;              // some receiver's horizon differs from its normal
 
   // Sets the receivers and keeps the memory.

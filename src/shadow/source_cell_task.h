@@ -13,9 +13,10 @@ namespace troffer {
 struct SourceCellTask {
   const SourceTask& source;
   const MaskFrame& frame;
-  std::span<const float> unoccluded;  // of the cell, per receiver of the cluster, sr
-  uint64_t stream;                    // hash that is unique to the cell, for random numbers
-  bool is_complete;                   // of the facet list
+  std::span<const float>
+      unoccluded;       // unoccluded light of the cell, per receiver of the cluster, sr
+  uint64_t stream;      // hash that is unique to the cell, for random numbers
+  bool is_complete;     // whether the facet list is complete
   bool is_over_budget;  // lists of this source are too long, so several masks share the rays
 
   // All occluders that an incomplete list lacks; null if they are not known.

@@ -35,7 +35,7 @@ bool add_parts(std::span<const Vec3> outline, uint32_t primitive, std::vector<So
 // Polygons that may be merged.
 struct Polygons {
   std::vector<Vec3> positions;
-  std::vector<uint32_t> corners;  // of the polygon that is being added
+  std::vector<uint32_t> corners;  // corners of the polygon that is being added
   PolygonList list;
   std::vector<uint32_t> primitives;
 

@@ -134,7 +134,7 @@ namespace {
 template <class T>
 struct Lambert {
   T corners[3 * most_corners];  // relative to the first one
-  T sizes[most_corners];        // of edges
+  T sizes[most_corners];        // lengths of edges
   BlockReceivers<T> receivers;
   BlockSums<T> sums;
 

@@ -31,7 +31,7 @@ class ClosedShells {
   // A closed surface, with its triangles in a grid across one direction.
   struct Shell {
     Vec3d lower, upper;
-    Vec2d from, per_cell;  // of the grid: lower corner, and size of a cell
+    Vec2d from, per_cell;  // lower corner of the grid, and its cells per metre
     int cells = 1;         // per side
     std::vector<uint32_t> first, of_cell;
     std::vector<Corners> triangles;

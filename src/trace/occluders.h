@@ -112,7 +112,7 @@ class Occluders {
   std::vector<Quad> quads_;
   using Corners = std::array<uint32_t, 4>;  // a triangle repeats its last
   std::vector<Corners> corners_;
-  std::vector<Vec3> vertices_;  // of all meshes
+  std::vector<Vec3> vertices_;  // vertices of all meshes
   bool is_large_ = false;
   std::vector<uint32_t> component_;  // per facet
   std::vector<Component> components_;
@@ -122,7 +122,7 @@ class Occluders {
     Quad cover;
     bool is_flat;
     RoundBody round;  // radius 0: neither a sphere nor a disk
-    uint64_t key;     // of a hit on it
+    uint64_t key;     // key of a hit on it
   };
   std::vector<Other> others_;
   std::vector<std::vector<uint32_t>> facet_of_;  // per mesh, per triangle

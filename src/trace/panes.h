@@ -57,7 +57,7 @@ class PanePlaces {
  private:
   struct Place {
     Box bounds;
-    Vec3 normal;       // of a flat pane; 0: not flat
+    Vec3 normal;       // normal of a flat pane; 0: not flat
     float height = 0;  // along the normal
     float slack = 0;   // possible distance from that plane, metres
     // Triangles of a simple pane, and its transmittance at even steps of the cosine of incidence.

@@ -37,7 +37,7 @@ struct RayCone {
 // count.
 class Segments {
  public:
-  static constexpr size_t coordinates = 6;  // of the origin, then of the direction
+  static constexpr size_t coordinates = 6;  // those of the origin, then those of the direction
 
   size_t size() const { return size_; }
   const float* coordinate(size_t c) const { return arrays_[c].data(); }

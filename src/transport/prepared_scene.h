@@ -62,7 +62,7 @@ struct PreparedScene {
  public:
   const Tracer& tracer;
   const LightPrimitives primitives;
-  const std::vector<WebLookup> webs;  // of scene.webs
+  const std::vector<WebLookup> webs;  // one per item of scene.webs
   const LightTree light_tree;
 
   // Returns the sky patches of lights at infinity. They are built on first use, by any thread: an

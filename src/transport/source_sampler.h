@@ -37,7 +37,7 @@ struct SampledVertex {
   const Bsdf* alone = nullptr;
   // Part that is also sampled by one BSDF sample, so that the power heuristic applies; may be null.
   const Bsdf* competing = nullptr;
-  bool has_transmission = false;  // of either part
+  bool has_transmission = false;  // true if either part transmits
   bool is_direct = true;          // the light counts as direct
 };
 

@@ -124,7 +124,7 @@ class Painter {
   std::condition_variable changed_;
   Orders orders_;  // guarded by the mutex
   StopFlag cancel_ = false;
-  std::vector<Work> works_;  // of the current view
+  std::vector<Work> works_;  // steps of the current view
   double blocks_ = PreviewPace().first_blocks;
   uint64_t view_ = 0;
   Clock::time_point begun_;

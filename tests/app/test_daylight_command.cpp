@@ -81,6 +81,24 @@ TEST_CASE("skies and suns give an open plane the requested illuminance") {
   }
 }
 
+// A sky without diffuse light, as in an hour of a weather file, emits nothing itself. The ground
+// below it still reflects the sun, by its reflectance of 0.2: 0.2 × 40 000 lx × sin 30°.
+TEST_CASE("the ground reflects the sun also below a sky that is dark") {
+  const Folder folder;
+  const std::string scene = folder.write("plate.obj", plain_obj);
+  const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n9,9,1,0,0,-1\n");
+  for (const char* method : {"certified", "path", "fixed"}) {
+    const Finished f = run_program(
+        folder, {"measure", scene, "--points", points, "--sky", "even,0", "--sun", "200,30,40000",
+                 "--indirect", "none", "--up", "0,0,1", "--method", method, "--spp", "4096"});
+    CAPTURE(f.err);
+    CAPTURE(method);
+    REQUIRE(f.status == 0);
+    const Measured m = measured(f).at(0);
+    CHECK(std::abs(m.lx - 4000) < 5e-3 * 4000 + 5 * m.error);
+  }
+}
+
 TEST_CASE("an image of the surroundings: scale, rotation, and what cannot be read") {
   const Folder folder;
   // Bright in the east: the middle of the image, at a height of 45 degrees.

@@ -67,3 +67,23 @@ TEST_CASE("the plan of the default method has the forecast that decided about pa
   CHECK(plan.at("forecast").at("paths_per_pixel").get<double>() > 0);
   CHECK(plan.at("forecast").at("rays_by_paths").get<double>() > 0);
 }
+
+TEST_CASE("--stats counts the rays of cells and gathers apart from those of the picture") {
+  const Folder folder;
+  const std::string scene = folder.write("room.pbrt", bright_room_pbrt());
+  const auto prepared = [&](const std::string& indirect) {
+    const Finished f = run_program(
+        folder, {"render", scene, "-o", folder.path("o.exr"), "--size", "16x12", "--indirect",
+                 indirect, "--error", "0.3", "--stats", folder.path("s.json")});
+    CAPTURE(f.err);
+    REQUIRE(f.status == 0);
+    return nlohmann::json::parse(read_file(folder.path("s.json")));
+  };
+  const nlohmann::json cells = prepared("cells"), none = prepared("none");
+  CHECK(cells["preparation"]["extension_rays"].get<uint64_t>() >=
+        cells["cells"]["rays"].get<uint64_t>());
+  CHECK(cells["preparation"]["shadow_rays"].get<uint64_t>() > 0);
+  CHECK(cells["preparation"]["nan_samples"] == 0);
+  CHECK(none["preparation"]["extension_rays"] == 0);
+  CHECK(none["preparation"]["shadow_rays"] == 0);
+}

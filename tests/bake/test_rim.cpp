@@ -6,8 +6,11 @@
 
 #include "bake/bake.h"
 #include "import/import.h"
+#include "render/measure.h"
+#include "support/scenes.h"
 
 using namespace troffer;
+using namespace troffer::test;
 
 namespace {
 
@@ -96,4 +99,73 @@ TEST_CASE("at a wall without thickness the lit side keeps its light and the dark
   const BakeResult r = baked(std::move(scene), 256, 32);
   CHECK(light_on_floor(r, 3.88, 2) == doctest::Approx(463.6).epsilon(0.06));
   CHECK(light_on_floor(r, 4.3, 2) < 5);
+}
+
+namespace {
+
+// Adds the outside of a box that stands on the floor, without its bottom.
+void add_body(Scene& s, uint32_t material, const Vec3& a, const Vec3& b) {
+  for (size_t axis = 0; axis < 3; ++axis)
+    for (const bool is_high : {false, true}) {
+      if (axis == 1 && !is_high) continue;
+      const size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+      std::array<Vec3, 4> p;
+      for (size_t k = 0; k < 4; ++k) {
+        p[k][axis] = is_high ? b[axis] : a[axis];
+        p[k][u] = k == 1 || k == 2 ? b[u] : a[u];
+        p[k][v] = k >= 2 ? b[v] : a[v];
+      }
+      if (!is_high) std::swap(p[1], p[3]);
+      add_quad(s, material, p);
+    }
+}
+
+// Two lit rooms on one floor, one ten times as bright as the other. A wall of 10 cm divides them,
+// another meets it in the brighter room, and a cupboard stands through wall and floor.
+Scene rooms_that_share_a_wall() {
+  Scene s;
+  s.is_photometric = true;
+  const uint32_t grey = add_diffuse(s, Rgb{0.5f});
+  const auto sides = add_box_inside(s, grey, {0, 0, 0}, {4, 2.5f, 4});
+  s.meshes[sides[2]].name = "floor";
+  add_body(s, grey, {1.95f, 0, 0}, {2.05f, 2.5f, 4});
+  add_body(s, grey, {1, 0, 1.95f}, {1.97f, 2.5f, 2.05f});
+  add_body(s, grey, {1.6f, -0.05f, 3}, {2, 0.8f, 3.5f});
+  const auto add_lamp = [&](float x, float radiance) {
+    const uint32_t lamp = add_quad(
+        s, add_diffuse(s, Rgb{0}),
+        {Vec3{x, 2.45f, 0.5f}, {x + 0.6f, 2.45f, 0.5f}, {x + 0.6f, 2.45f, 3.5f}, {x, 2.45f, 3.5f}});
+    make_light(s, lamp, Rgb{radiance});
+  };
+  add_lamp(0.6f, 10);
+  add_lamp(2.8f, 1);
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "the rim of a floor at inner corners, between two lit rooms, and at furniture in a wall") {
+  const std::vector<std::array<double, 2>> places{
+      {1.93, 1},    {1.9, 1},     {1.85, 1},     // wall, brighter room
+      {2.07, 1},    {2.1, 1},     {2.15, 1},     // its other side, darker room
+      {1.92, 1.92}, {1.88, 1.88}, {1.92, 2.08},  // inner corners
+      {1.5, 1.92},  {1.5, 2.08},                 // both sides of a wall in the room
+      {1.57, 3.25}, {1.52, 3.25}, {1.92, 2.97},  // front of the cupboard, corner with the wall
+  };
+  const PreparedScene scene(rooms_that_share_a_wall());
+  std::vector<MeasuringPoint> points;
+  for (const auto& [x, z] : places) points.push_back({{x, 0, z}, {0, 1, 0}});
+  MeasureOptions o;
+  o.method = Method::path;
+  o.spp = 1 << 14;
+  o.threads = 2;
+  const MeasureResult right = measure(scene, points, o, {}, never_stop);
+  const BakeResult r = baked(rooms_that_share_a_wall(), 256, 32);
+  for (size_t i = 0; i < places.size(); ++i) {
+    CAPTURE(places[i][0]);
+    CAPTURE(places[i][1]);
+    CHECK(light_on_floor(r, places[i][0], places[i][1]) ==
+          doctest::Approx(right.values[i].illuminance_lx).epsilon(0.08));
+  }
 }

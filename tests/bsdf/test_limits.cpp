@@ -33,6 +33,27 @@ TEST_CASE("Fresnel reflectances have their known values") {
   CHECK(1 - outside == doctest::Approx(0.0918).epsilon(2e-3));
 }
 
+TEST_CASE("a plate that absorbs nothing is the clear plate, down to grazing incidence") {
+  for (const float cosine : {1.0f, 0.5f, 1e-2f, 1e-4f, 1e-6f, 1e-8f, 1e-9f, 0.0f})
+    for (const float eta : {1.5f, 1.001f, 2.5f, 1 / 1.5f}) {
+      CAPTURE(cosine);
+      CAPTURE(eta);
+      const double r = double(plate_reflectance(cosine, eta));
+      for (const float left : {1.0f, 1 - 1e-7f, 0.5f, 0.0f}) {
+        CAPTURE(left);
+        const PlateShares p = absorbing_plate(cosine, eta, left);
+        REQUIRE(std::isfinite(p.reflected));
+        REQUIRE(std::isfinite(p.transmitted));
+        CHECK(p.reflected >= 0);
+        CHECK(p.transmitted >= 0);
+        CHECK(double(p.reflected + p.transmitted) <= 1 + 1e-6);
+        if (left < 1) continue;
+        CHECK(double(p.reflected) == doctest::Approx(r).epsilon(1e-5));
+        CHECK(double(p.transmitted) == doctest::Approx(1 - r).epsilon(1e-4));
+      }
+    }
+}
+
 TEST_CASE("tables agree with direct integration") {
   GgxTables ggx;
   std::vector<CoatTable> coats(1);
@@ -147,8 +168,7 @@ TEST_CASE("many indices of refraction share a bounded number of tables") {
     const double e = scattered(b, direction(0.7f)).total();
     CHECK(std::abs(e - 1) < 0.25);
   }
-  CHECK(tables.material(31).coat == 31);
-  CHECK(tables.material(199).coat == 31);
+  for (const uint32_t i : {0u, 31u, 199u}) CHECK(tables.material(i).coat < 64);
 }
 
 TEST_CASE("two equal widths are isotropic, and the grain turns with the surface") {

@@ -107,6 +107,33 @@ TEST_CASE("stored cells get no more hits, new cells beside them do") {
   CHECK(map.hits(young).size() == 2);
 }
 
+TEST_CASE("a stored cell keeps all hits of a picture's own rays, not only the first eight") {
+  const Scene scene = floor_scene();
+  const Tracer tracer(scene);
+  auto map = std::make_shared<CellMap>(tracer, 1.0f);
+  Random random(5);
+  CellStore store;
+  // Cells with 1, 8, 9, 20, and more hits than a cell keeps.
+  const std::vector<std::pair<int, size_t>> cells{{1, 1}, {8, 8}, {9, 9}, {20, 20}, {50, 32}};
+  for (size_t c = 0; c < cells.size(); ++c)
+    for (int i = 0; i < cells[c].first; ++i)
+      REQUIRE(map->add(on_floor(float(c) + 0.2f * random.next_float(), 0.2f * random.next_float()),
+                       5, true) == c);
+  store.direct.resize(map->size());
+  store.direct_half_difference.resize(map->size());
+  store.rows.finish(map->size());
+  store.map = map;
+  const CellStore back = load_cells(save_cells(store, key), "a.cells", key, tracer);
+  REQUIRE(back.map->size() == cells.size());
+  for (size_t c = 0; c < cells.size(); ++c) {
+    CAPTURE(c);
+    const auto before = map->hits(c), after = back.map->hits(c);
+    REQUIRE(before.size() == cells[c].second);
+    REQUIRE(after.size() == before.size());
+    for (size_t i = 0; i < before.size(); ++i) CHECK(after[i].position == before[i].position);
+  }
+}
+
 TEST_CASE("damaged files of cells, and those of other scenes, are refused") {
   const Scene scene = floor_scene();
   const Tracer tracer(scene);

@@ -28,6 +28,22 @@ size_t entries(const TempFolder& folder) {
 
 }  // namespace
 
+// A folder that takes the place of the second file stops the renaming there.
+TEST_CASE("the main file is renamed after all others") {
+  const TempFolder folder;
+  const std::string a = folder.write("a", "old a"), b = folder.path("b"),
+                    c = folder.write("c", "old c");
+  OutputSet set;
+  set.add(a, "new a");
+  set.add(c, "new c");
+  set.add(b, "new b");
+  set.rename_last(a);
+  std::filesystem::create_directories(b + "/full");
+  CHECK_THROWS_AS(set.commit(), EnvironmentError);
+  CHECK(text_of(a) == "old a");
+  CHECK(text_of(c) == "new c");
+}
+
 TEST_CASE("no file is replaced before commit(), and nothing is left behind if one fails") {
   const TempFolder folder;
   const std::string a = folder.write("a", "old a"), b = folder.write("b", "old b");

@@ -74,3 +74,25 @@ TEST_CASE("a room is shown from inside, an object from the front") {
   CHECK_FALSE(is_room(PreparedScene(std::move(table))));
   CHECK_FALSE(is_room(PreparedScene(Scene())));
 }
+
+TEST_CASE("spheres count like other surfaces: balls in a room, a room that is a sphere, a ball") {
+  const auto add_ball = [](Scene& s, const Vec3& centre, float radius, bool is_inside_out) {
+    Sphere ball;
+    ball.centre = centre;
+    ball.radius = radius;
+    ball.is_inside_out = is_inside_out;
+    ball.material = add_diffuse(s, Rgb{0.5f});
+    s.spheres.push_back(ball);
+  };
+  Scene balls;  // nearly all rays meet balls
+  add_box(balls, {0, 0, 0}, {4, 4, 4}, true);
+  for (int i = 0; i < 64; ++i)
+    add_ball(balls, Vec3{float(i % 4), float(i / 4 % 4), float(i / 16)} + Vec3{0.5f}, 0.4f, false);
+  CHECK(is_room(PreparedScene(std::move(balls))));
+  Scene dome;
+  add_ball(dome, {0, 0, 0}, 3, true);
+  CHECK(is_room(PreparedScene(std::move(dome))));
+  Scene ball;
+  add_ball(ball, {0, 0, 0}, 3, false);
+  CHECK_FALSE(is_room(PreparedScene(std::move(ball))));
+}

@@ -108,10 +108,11 @@ TEST_CASE("cells for many accurate points have more rays and less noise") {
   constexpr int samples = 1 << 14;
   uint64_t rays = 0;
   // Cells of different seeds, read by the same gather rays.
+  std::vector<double> first;  // of the last call
   const auto noise = [&](const GatheringPoints& gathering) {
-    const std::vector<double> first = list.by_cells(samples, gathering, 1, &rays);
+    first = list.by_cells(samples, gathering, 1, &rays);
     double squares = 0;
-    constexpr int others = 3;
+    constexpr int others = 2;
     for (uint64_t seed = 2; seed < 2 + others; ++seed)
       squares += std::pow(relative_rms(list.by_cells(samples, gathering, seed), first), 2);
     return std::sqrt(squares / others);
@@ -123,9 +124,8 @@ TEST_CASE("cells for many accurate points have more rays and less noise") {
   CAPTURE(rays);
   CAPTURE(before);
   CAPTURE(now);
-  CHECK(list.by_cells(samples, {samples, 32 * samples, 0.0025}, 1) ==
-        List(scene, points_behind_the_partition(16), 3)
-            .by_cells(samples, {samples, 32 * samples, 0.0025}, 1));
+  CHECK(first == List(scene, points_behind_the_partition(16), 3)
+                     .by_cells(samples, {samples, 32 * samples, 0.0025}, 1));
   CHECK(rays > 3 * usual);
   CHECK(now < 0.6 * before);
 }
@@ -137,7 +137,7 @@ TEST_CASE("the error of cells is included in the estimate of every point") {
   // Just below the gap, where some cells are far brighter than others.
   points.push_back({{2.4, 2, 2.7}, {1, 0, 0}});
   const List list(scene, points);
-  constexpr int samples = 1 << 13, seeds = 10;
+  constexpr int samples = 1 << 13, seeds = 6;
   for (const int times : {1, 32}) {
     CAPTURE(times);
     std::vector<PointValues> found;
@@ -201,7 +201,8 @@ TEST_CASE("points in the gap behind a luminaire get the light that enters at its
   for (int i = 0; i < 8; ++i) points.push_back({{0.5 + 0.5 * i, 1 + 0.2 * i, 0.8}, {0, 0, 1}});
   const List list(scene, points);
   constexpr int samples = 1 << 16;
-  const std::vector<double> paths = list.by_paths(samples),
+  const std::vector<MeasuringPoint> gap(points.begin(), points.begin() + std::ptrdiff_t(in_gap));
+  const std::vector<double> paths = List(scene, gap).by_paths(samples),
                             cells = list.by_cells(samples, {samples, samples, 0}, 1);
   double ratio = 0;
   for (size_t i = 0; i < in_gap; ++i) ratio += cells[i] / paths[i] / double(in_gap);

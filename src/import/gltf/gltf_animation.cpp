@@ -39,7 +39,7 @@ Interpolation interpolation_of(const JsonNode& sampler) {
 // Position of a time between two keys: [1] appendix C.
 struct Moment {
   uint64_t key = 0;     // key before the time; the time lies before the next key unless is_at_key
-  double fraction = 0;  // of the interval, 0 to 1
+  double fraction = 0;  // fraction of the interval, 0 to 1
   double seconds = 0;   // length of the interval
   bool is_at_key = true;
 };

@@ -17,7 +17,7 @@ namespace troffer {
 // Transform, morph weights and joints of a mesh.
 struct GltfPose {
   Affine world_from_mesh;
-  std::vector<double> target_weights;  // of morph targets; missing ones are 0
+  std::vector<double> target_weights;  // weights of morph targets; missing ones are 0
   std::vector<Affine> joints;          // world from mesh, per joint of the skin; empty: no skin
 };
 

@@ -22,7 +22,7 @@ constexpr size_t max_luminaire_bytes = size_t(64) << 20;
 
 // Factors on the light of a luminaire that is tilted together with its lamp.
 struct TiltFactors {
-  std::vector<double> angles_deg, factors;  // of equal size; empty: factor 1
+  std::vector<double> angles_deg, factors;  // lists of equal size; empty: factor 1
 };
 
 // Content of a photometric file.

@@ -15,7 +15,8 @@ constexpr double min_gap_deg = 1e-3;        // degrees; closer angles are equal 
 // Largest gap in steps: tables that list the middles of zones begin half a step from the pole. The
 // excess is for rounding.
 constexpr double zone_gap = 0.505;
-constexpr double lit_share = 0.01;  // of the largest intensity; a darker edge needs no warning
+constexpr double lit_share =
+    0.01;  // share of the largest intensity; a darker edge needs no warning
 
 double snapped(double angle, double neighbour) {
   const double nearest = 90 * std::round(angle / 90), off = std::abs(angle - nearest);

@@ -43,7 +43,7 @@ struct OpeningFace {
 struct OpeningBody {
   enum class Shape { point, sphere, disc, faces };
   Shape shape = Shape::point;
-  double radius = 0;  // of a sphere or disc, m
+  double radius = 0;  // radius of a sphere or disc, m
   std::vector<OpeningFace> faces;
 };
 

@@ -47,7 +47,7 @@ class PhotometricText {
   const std::string& file_;
   std::string_view text_;
   size_t next_ = 0;               // offset of the first unread byte
-  size_t line_ = 0, column_ = 1;  // of the item read last, from 1
+  size_t line_ = 0, column_ = 1;  // place of the item read last, from 1
   size_t line_start_ = 0;
   bool is_in_line_ = false, has_met_commas_ = false, are_commas_decimal_ = false;
 };

@@ -49,14 +49,14 @@ class ObjReader {
   std::string path_, folder_;
   const PieceReading& how_;
   Scene& scene_;
-  PlacedBounds& bounds_;                 // of positions in triangles
+  PlacedBounds& bounds_;                 // box around positions of triangles
   std::vector<std::string_view> texts_;  // one per piece
 
   struct Vertices {
     std::vector<Vec3d> positions;  // relative to Scene::origin
     std::vector<Vec3> normals;
     std::vector<Vec2> uvs;
-    std::vector<Rgb> colors;  // of the first positions; further ones are white
+    std::vector<Rgb> colors;  // colors of the first positions; further ones are white
   } vertices_;
   ObjParts parts_;
   ObjCounts counts_;

@@ -47,12 +47,12 @@ struct ObjPiece {
   std::vector<Vec3d> positions;  // as in the file
   std::vector<Vec3> normals;
   std::vector<Vec2> uvs;
-  std::vector<Rgb> colors;  // of the first positions; further ones are white
+  std::vector<Rgb> colors;  // colors of the first positions; further ones are white
   std::vector<ObjEvent> events;
   size_t points_and_lines = 0;
 
   std::vector<ObjWrittenCorner> written;  // corners of all faces
-  std::vector<uint32_t> sizes;            // of faces, in corners
+  std::vector<uint32_t> sizes;            // numbers of corners of faces
   // Counts in the piece before a face. There is an entry for each face whose counts differ from
   // those before the previous face.
   struct Seen {
@@ -60,7 +60,7 @@ struct ObjPiece {
     ObjCounts counts;
   };
   std::vector<Seen> seen;
-  ObjCounts counts;  // of the whole piece
+  ObjCounts counts;  // counts of the whole piece
 
   // Output of place_obj_faces.
   std::vector<ObjCorner> corners;  // three per triangle

@@ -38,7 +38,7 @@ class PlyCutter {
   const PlyHeader& header_;
   const std::string& file_;
   size_t piece_bytes_;
-  std::vector<PlyPiece> blocks_;  // of an ascii body: the whole body, with lines as rows
+  std::vector<PlyPiece> blocks_;  // blocks of an ASCII body: the whole body, with lines as rows
 
   void find_lines();
   std::optional<std::vector<PlyPiece>> cut_lines(const PlyElement& element, size_t begin) const;

@@ -35,7 +35,7 @@ class MitsubaReader {
     std::vector<std::pair<std::string, const MitsubaNode*>> by_material;
     const MitsubaNode* emitter = nullptr;
     bool has_medium = false;  // on either side
-    Rgb absorption{0};        // of the medium inside, per metre
+    Rgb absorption{0};        // absorption of the medium inside, per metre
   };
 
   Scene& scene_;

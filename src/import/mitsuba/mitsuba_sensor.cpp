@@ -12,7 +12,7 @@ namespace troffer {
 namespace {
 
 struct Film {
-  int width = 768, height = 576;  // of the whole picture, in pixels
+  int width = 768, height = 576;  // size of the whole picture, in pixels
   int crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;
 };
 

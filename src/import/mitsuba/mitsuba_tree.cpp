@@ -12,10 +12,10 @@ namespace troffer {
 
 namespace {
 
-constexpr uint64_t max_mitsuba_bytes = uint64_t(256) << 20;  // of all files together
+constexpr uint64_t max_mitsuba_bytes = uint64_t(256) << 20;  // limit for all files together
 constexpr size_t max_nodes = 8'000'000;
 constexpr size_t max_element_depth = 64, max_included_files = 200, max_nested_files = 16;
-constexpr size_t max_expanded_bytes = size_t(64) << 20;  // of all values with $parameters
+constexpr size_t max_expanded_bytes = size_t(64) << 20;  // limit for all values with $parameters
 constexpr size_t max_value = size_t(1) << 20;
 
 bool is_upper(char c) {

@@ -20,7 +20,7 @@ namespace troffer {
 // One element. Its attribute values have their $parameters replaced.
 struct MitsubaNode {
   std::string tag;
-  std::string type;  // of a plugin: "diffuse"
+  std::string type;  // type of a plugin: "diffuse"
   std::string name;  // in snake_case, as from version 2 on: toWorld -> to_world
   std::string id;
   std::map<std::string, std::string> attributes;  // all other attributes, `value` among them
@@ -54,7 +54,7 @@ class MitsubaTree {
  private:
   friend class MitsubaTreeReader;
   std::string folder_;
-  std::vector<std::string> paths_;  // of <path>, relative to the folder
+  std::vector<std::string> paths_;  // paths of <path>, relative to the folder
   bool is_legacy_ = false;
   std::deque<MitsubaNode> nodes_;
   std::map<std::string, const MitsubaNode*> by_id_;

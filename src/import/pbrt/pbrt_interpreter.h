@@ -35,7 +35,7 @@ class PbrtInterpreter {
     std::shared_ptr<const PbrtAreaLight> light;
     std::shared_ptr<const Defaults> defaults;
     bool is_start_active = true, is_end_active = true;
-    Rgb absorption{0};  // of the medium inside shapes, per metre
+    Rgb absorption{0};  // absorption of the medium inside shapes, per metre
     PbrtColorSpace color_space = PbrtColorSpace::srgb;
   };
   enum class Block { attribute, object };

@@ -49,7 +49,7 @@ struct PbrtParam {
 class PbrtParams {
  public:
   std::string owner;  // for messages: Shape "sphere"
-  PbrtPlace place;    // of the directive
+  PbrtPlace place;    // place of the directive
 
   void add(PbrtParam param) { params_.push_back(std::move(param)); }
   const std::vector<PbrtParam>& all() const { return params_; }

@@ -31,7 +31,7 @@ struct PbrtShape {
   std::shared_ptr<const AnchoredMesh> mesh;  // everything else
   bool is_quadric = false;                   // the mesh's normals follow the rule of quadrics
   std::optional<FloatInput> alpha;           // coverage, if it may be below 1
-  Rgb absorption{0};                         // of the medium inside, per metre
+  Rgb absorption{0};                         // absorption of the medium inside, per metre
   Affine world_from_object;
   bool is_reversed = false;  // ReverseOrientation
   std::shared_ptr<PbrtMaterial> material;

@@ -49,7 +49,7 @@ class RadianceFunctions {
 
 // Product of a material's patterns.
 struct RadiancePattern {
-  std::vector<RadianceFunctions> functions;  // of one or three values each
+  std::vector<RadianceFunctions> functions;  // functions of one or three values each
 
   static bool is_evaluated(const std::string& type) {
     return type == "brightfunc" || type == "colorfunc";
