@@ -10,10 +10,16 @@ namespace troffer {
 
 namespace {
 
-// Mean over the test pixels of the variance of one ray over the squared allowed error.
-double variance_of(std::span<const TestPixel> pixels, const TestedWay& tested) {
+// What the test rays of a way saw, over the allowed error: mean luminance, and variance of one ray.
+struct TestResult {
+  double mean = 0, variance = 0;
+};
+
+// Returns the means over the test pixels.
+TestResult seen_by(std::span<const TestPixel> pixels, const TestedWay& tested) {
   const size_t rays = tested.luminances.size() / pixels.size();
-  double variance = 0, missing = 0;
+  const auto n = double(rays), count = double(pixels.size());
+  TestResult seen;
   for (size_t p = 0; p < pixels.size(); ++p) {
     double sum = 0, squares = 0;
     for (size_t i = 0; i < rays; ++i) {
@@ -21,13 +27,11 @@ double variance_of(std::span<const TestPixel> pixels, const TestedWay& tested) {
       sum += v;
       squares += sqr(v);
     }
-    const auto n = double(rays);
-    variance += std::max(squares - sqr(sum) / n, 0.0) / (n - 1) / sqr(pixels[p].allowed);
-    missing += (pixels[p].luminance - sum / n) / pixels[p].allowed;
+    seen.variance +=
+        std::max(squares - sqr(sum) / n, 0.0) / (n - 1) / sqr(pixels[p].allowed) / count;
+    seen.mean += sum / n / pixels[p].allowed / count;
   }
-  const auto count = double(pixels.size());
-  return variance / count +
-         sqr(std::max(missing, 0.0) / count) * double(tested.luminances.size()) / 3;
+  return seen;
 }
 
 }  // namespace
@@ -35,16 +39,21 @@ double variance_of(std::span<const TestPixel> pixels, const TestedWay& tested) {
 FurtherChoice choose_further_way(std::span<const TestPixel> pixels,
                                  std::span<const TestedWay> tested, double most_even) {
   TROFFER_CHECK(!pixels.empty() && !tested.empty());
-  double planned = 0;
-  for (const TestPixel& p : pixels) planned += p.planned / double(pixels.size());
+  double planned = 0, expected = 0;
+  for (const TestPixel& p : pixels) {
+    planned += p.planned / double(pixels.size());
+    expected += p.luminance / p.allowed / double(pixels.size());
+  }
   TROFFER_CHECK(planned > 0);
   FurtherChoice best{tested.front().way};
   double least = 0;
   for (const TestedWay& t : tested) {
-    const double variance = variance_of(pixels, t), work = variance * t.cost;
-    if (best.is_tested && work >= least) continue;
+    const TestResult seen = seen_by(pixels, t);
+    const double work = seen.variance * t.cost;
+    const bool may_miss_light = 2 * seen.mean < expected;
+    if (best.is_tested && (may_miss_light || work >= least)) continue;
     least = work;
-    best = {t.way, true, samples_for({.chance = variance}, 1, most_even, 0), 1};
+    best = {t.way, true, samples_for({.chance = seen.variance}, 1, most_even, 0), 1};
   }
   best.times = best.rays / planned;
   return best;

@@ -47,10 +47,10 @@ struct TestPixel {
   double planned = 0;  // further rays
 };
 
-// Returns the way of least cost for a given error. Light that the first rays have seen and the test
-// rays have not is taken to come in rare, bright rays: of n test rays that all missed it, it has a
-// variance of at least n / 3 times its square (the 95 % limit of its chance is 3 / n).
-// most_even: as in samples_for() (sample_spread.h).
+// Returns the way of least cost for a given error. The first of `tested` is like the first rays of
+// a pixel. Other ways whose test rays bring less than half the light that the first rays have seen
+// are out: the rest may come in rays so rare and bright that no test shows their variance, such as
+// samples of a lamp behind a pinhole. most_even: as in samples_for() (sample_spread.h).
 FurtherChoice choose_further_way(std::span<const TestPixel> pixels,
                                  std::span<const TestedWay> tested, double most_even);
 

@@ -139,7 +139,6 @@ TestPixel TileTracer::test_pixel(const Pixel2& p, const TileWork& w) const {
           allowed_error(options_.error, e.luminance,
                         std::max(double(w.rays.request.typical_luminance), 1e-30)),
           double(further_.at(p.x, p.y).samples) - further_.first_spp()};
-};
 }
 
 // Tests all ways at a few pixels of a tile that wants many further rays.
