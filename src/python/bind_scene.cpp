@@ -51,7 +51,7 @@ void bind_load(py::module_& m) {
       py::arg("file"), py::kw_only(), py::arg("variant") = py::none(), py::arg("time") = py::none(),
       py::arg("animation") = py::none(), py::arg("emission_scale") = 1.0, py::arg("baked") = false,
       "Loads a scene from a path (str or os.PathLike): .gltf .glb .pbrt .obj .stl .ply .xml "
-      "(Mitsuba) or .rad. variant: of glTF's materials; time: seconds into the animation; "
+      "(Mitsuba), .rad or .hbjson. variant: of glTF's materials; time: seconds into the animation; "
       "emission_scale: factor on what surfaces of the file emit; baked: show the light that "
       "`troffer bake` wrote. Raises InputError.");
 }
