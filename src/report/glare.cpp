@@ -163,6 +163,14 @@ double position_index(const Vec3d& towards, const Vec3d& line_of_sight, const Ve
   return index_above(off_axis > 0 ? tau : 0, deg_from_rad(std::atan(off_axis)));
 }
 
+double wide_position_index(const Vec3d& w) {
+  constexpr double largest = 16, farthest = 3;  // evalglare.c, get_posindex
+  const double ahead = std::max(w.z, 1e-9), off_axis = std::hypot(w.x, w.y) / ahead;
+  if (w.y < 0) return index_below(std::min(off_axis, farthest));
+  const double tau = deg_from_rad(std::atan2(std::abs(w.x), w.y));
+  return std::min(index_above(off_axis > 0 ? tau : 0, deg_from_rad(std::atan(off_axis))), largest);
+}
+
 std::vector<SeenLuminaire> seen_luminaires(const PreparedScene& scene, const Observer& observer,
                                            const Vec3d& up, uint64_t seed, int samples) {
   const Eye eye(scene, observer, up);
