@@ -179,6 +179,9 @@ int run_glare(GlareCommand c) {
   options.threads = c.threads;
   options.seed = c.seed;
   options.indirect = Indirect::automatic;
+  // Indices are sums over many pixels, so noise of single ones hardly counts. Sources' edges need
+  // a few more rays than the first pass.
+  options.max_spp = 16;
   OutputGuard guard;
   guard.add_inputs(c.scene, c.daylight);
   guard.add_output("-o", c.output);

@@ -164,8 +164,11 @@ TEST_CASE("position indices have evalglare's limits") {
   CHECK(wide_position_index({0, 1, 0.01}) == 16);
   // Below, the distance from the axis counts up to 3: 1 + 1.2 × 3.
   CHECK(wide_position_index({0, -1, 0.01}) == doctest::Approx(4.6));
+  // evalglare 2021 gives 2.616 for a direction of its picture test, with tangents of angles.
+  CHECK(wide_position_index({0.700947, -0.677534, 0.222758}) ==
+        doctest::Approx(2.616443).epsilon(1e-4));
   // Equal to the bounded index where that is defined.
-  for (const Vec3d w : {Vec3d{0.5, 0.3, 1}, Vec3d{-0.2, -0.4, 1}, Vec3d{0.1, 1.2, 1}})
+  for (const Vec3d w : {Vec3d{0.5, 0.3, 1}, Vec3d{0, -0.4, 1}, Vec3d{0.1, 1.2, 1}})
     CHECK(wide_position_index(w) ==
           doctest::Approx(position_index(w, {0, 0, 1}, {0, 1, 0})).epsilon(1e-9));
 }
