@@ -173,6 +173,23 @@ void WindowXml::check_energy(const pugi::xml_node& block, const AngleMatrix& m) 
                             text_of(block, "WavelengthDataDirection"), most));
 }
 
+// Warns of matrices that differ from those of the reverse ways.
+void report_reciprocity(const AngularBsdf& b, WarningLog& warnings) {
+  constexpr double notable = 0.25;  // of the greatest value; noise of genBSDF is below it
+  const auto check = [&](const AngleMatrix& m, const AngleMatrix& reverse, const char* what) {
+    if (m.is_empty() || reverse.is_empty()) return;
+    const double error = reciprocity_error(m, reverse);
+    if (error > notable)
+      warnings.add(
+          fmt::format("a BSDF file is not reciprocal: {} differs from its reverse by {:.0f} "
+                      "% of the greatest value",
+                      what, 100 * error));
+  };
+  check(b.to_front, b.to_back, "transmission");
+  check(b.front_reflection, b.front_reflection, "reflection at the back");
+  check(b.back_reflection, b.back_reflection, "reflection at the front");
+}
+
 bool is_dark(const AngleMatrix& m) {
   return std::all_of(m.values.begin(), m.values.end(), [](float v) { return v == 0; });
 }
@@ -215,6 +232,7 @@ AngularBsdf WindowXml::read() {
   if (is_dark(out.to_front)) out.to_front = reversed(out.to_back);
   if (out.to_front.is_empty() && out.front_reflection.is_empty() && out.back_reflection.is_empty())
     throw InputError(file_, 1, 1, "has no visible BSDF data");
+  report_reciprocity(out, warnings_);
   return out;
 }
 

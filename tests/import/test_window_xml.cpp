@@ -89,6 +89,21 @@ TEST_CASE("missing or zero transmission is the reverse of the other direction") 
   }
 }
 
+TEST_CASE("matrices that are not reciprocal are named") {
+  const auto warnings = [](const AngleMatrix& front, const AngleMatrix& back) {
+    WarningLog log;
+    read(klems_file({{"Transmission Front", front}, {"Transmission Back", back}},
+                    "LBNL/Klems Quarter"),
+         &log);
+    return log.entries();
+  };
+  const AngleMatrix even = peaked_matrix(klems_quarter(), 0.3, 0);
+  CHECK(warnings(even, even).empty());
+  const auto other = warnings(even, peaked_matrix(klems_quarter(), 0.15, 0));
+  REQUIRE(other.size() == 1);
+  CHECK(other[0].text.find("transmission differs from its reverse by 50 %") != std::string::npos);
+}
+
 // The leaves of a tree of one level fill quarters of the square of leaving directions, for 4D and
 // 3D: the first has x and y below 0.
 TEST_CASE("tensor trees become Klems matrices") {
