@@ -206,22 +206,14 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
   r->add_flag("--quiet", c.is_quiet, "No progress bar, notes or warnings");
 }
 
-void add_compare(CLI::App& app, CompareCommand& c) {
-  CLI::App* s = app.add_subcommand("compare", "Compare a picture with a reference");
-  s->add_option("image", c.image, "Picture: .exr .hdr .pfm .png .jpg")->required();
-  s->add_option("reference", c.reference, "Reference of the same size")->required();
-  s->add_option("--map", c.map, "Picture file for the FLIP error map");
-  s->add_option("--difference", c.difference, "Picture file for the absolute difference");
-  s->add_flag("--json", c.is_json, "Print JSON");
-}
-
 void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
   CLI::App* s = app.add_subcommand("measure", "Measure irradiance and illuminance at points");
   add_scene_choice(*s, c.scene);
   s->add_option("--points", c.points, "CSV file with columns x,y,z,nx,ny,nz");
   s->add_option("--grid", c.grid.grids,
                 "Grid of points over the upward surface of a node, with the height above it and "
-                "the spacing in metres [0; spacing by EN 12464-1]; may be repeated")
+                "the spacing in metres [0; spacing by EN 12464-1]; or, by name or room, a sensor "
+                "grid of an .hbjson; may be repeated")
       ->allow_extra_args(false);
   s->add_option("--border", c.grid.border,
                 "Width of the strip without points along the edge of --grid, in metres")
@@ -319,6 +311,7 @@ int parse_and_run(int argc, const char* const* argv, ProcessGroup* group) {
   ViewCommand view;
   ReportCommand lighting;
   BakeCommand light;
+  GlareCommand glare;
   RawOptions render_raw, measure_raw;
   add_render(app, render, render_raw);
   add_compare(app, compare);
@@ -330,6 +323,7 @@ int parse_and_run(int argc, const char* const* argv, ProcessGroup* group) {
   add_view(app, view);
   add_report(app, lighting);
   add_bake(app, light);
+  add_glare(app, glare);
   require_plain_numbers(app);
   set_help(app);
   const bool leads = group == nullptr || group->leads();
@@ -351,6 +345,7 @@ int parse_and_run(int argc, const char* const* argv, ProcessGroup* group) {
     return run_report(lighting);
   }
   if (app.got_subcommand("bake")) return check_and_bake(*app.get_subcommand("bake"), light);
+  if (app.got_subcommand("glare")) return run_glare(std::move(glare));
   if (app.got_subcommand("merge")) return run_merge(merge);
   return run_info(info);
 }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
@@ -12,6 +13,15 @@
 #include "image/write_image.h"
 
 namespace troffer {
+
+void add_compare(CLI::App& app, CompareCommand& c) {
+  CLI::App* s = app.add_subcommand("compare", "Compare a picture with a reference");
+  s->add_option("image", c.image, "Picture: .exr .hdr .pfm .png .jpg")->required();
+  s->add_option("reference", c.reference, "Reference of the same size")->required();
+  s->add_option("--map", c.map, "Picture file for the FLIP error map");
+  s->add_option("--difference", c.difference, "Picture file for the absolute difference");
+  s->add_flag("--json", c.is_json, "Print JSON");
+}
 
 int run_compare(const CompareCommand& command) {
   for (const std::string& path : {command.map, command.difference})

@@ -61,6 +61,12 @@ Json info_json(const Scene& scene, const UpDecision& up) {
   for (const Light& e : scene.lights) j["lights"].push_back(e.name);
   j["cameras"] = Json::array();
   for (const Camera& c : scene.cameras) j["cameras"].push_back(c.name);
+  j["grids"] = Json::array();
+  for (const SensorGrid& g : scene.grids)
+    j["grids"].push_back({{"name", g.name}, {"room", g.room}, {"points", g.positions.size()}});
+  j["dynamic_groups"] = Json::array();
+  for (const DynamicGroup& g : scene.dynamic_groups)
+    j["dynamic_groups"].push_back({{"name", g.name}, {"states", g.states}, {"shown", g.shown}});
   const Boxd box = bounds_in_file(scene);
   if (box.is_empty())
     j["bounds"] = nullptr;
@@ -115,6 +121,13 @@ void print_text(const Scene& scene, const Json& j, const UpDecision& up) {
     fmt::print("  {}", printable(c.name));
     if (c.width > 0) fmt::print("  {}x{}", c.width, c.height);
     fmt::print("\n");
+  }
+  for (const SensorGrid& g : scene.grids)
+    fmt::print("grid       {}: {} points\n", printable(g.name), g.positions.size());
+  for (const DynamicGroup& g : scene.dynamic_groups) {
+    fmt::print("group      {}: shows state {} of {}\n", printable(g.name), g.shown,
+               g.states.size());
+    for (const std::string& state : g.states) fmt::print("  {}\n", printable(state));
   }
   fmt::print("emitters   {} of {} triangles\n", scene.lights.size(),
              j["emitter_triangles"].get<size_t>());

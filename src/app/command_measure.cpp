@@ -107,7 +107,8 @@ int run_measure(const MeasureCommand& c) {
   guard_files(c, options, guard);
   std::vector<OutputReservation> reserved = reserve_outputs({}, c.output);
   reserve_cells(c.solution, options.method, options.indirect, reserved);
-  if (c.points.empty() && c.grid.grids.empty())
+  const bool asks_for_none = c.points.empty() && c.grid.grids.empty();
+  if (asks_for_none && !may_have_sensor_grids(c.scene.file))
     throw UsageError("measure: give --points FILE.csv or --grid NODE");
   PointList list = c.points.empty() ? PointList{} : read_points(c.points);
   if (!c.is_quiet && !list.note.empty()) fmt::print(stderr, "note: {}\n", printable(list.note));
@@ -117,7 +118,10 @@ int run_measure(const MeasureCommand& c) {
   guard.check_files_read();
   const PreparedScene scene(std::move(imported));
   warn_of_misplaced(scene, c.is_quiet);
-  add_grids(scene, c.grid, up.decision.up, list);
+  if (asks_for_none)
+    add_sensor_grids(scene.scene, list);
+  else
+    add_grids(scene, c.grid, up.decision.up, list);
   const std::vector<MeasuringPoint>& points = list.points;
 
   const StopFlag& stop = install_stop_handlers();

@@ -16,6 +16,7 @@
 #include "lighting/daylight_options.h"
 #include "render/radiosity.h"
 #include "render/render.h"
+#include "report/daylight_glare.h"
 
 namespace CLI {
 class App;
@@ -76,7 +77,29 @@ struct CompareCommand {
   std::string difference;  // absolute difference to write, or empty
   bool is_json = false;
 };
+void add_compare(CLI::App& app, CompareCommand& command);  // adds its options
 int run_compare(const CompareCommand& command);
+
+// A file ending in .exr, .hdr or .pfm is a fisheye picture that is rated as it is.
+struct GlareCommand {
+  SceneChoice scene;
+  std::string eye, target, camera;  // "x,y,z", "x,y,z", name
+  int side = 800;                   // pixels
+  std::string task;                 // "x,y" in pixels, or empty
+  GlareSettings settings;
+  bool leaves_low_light = false;
+  std::string output;  // picture, or empty
+  bool is_json = false;
+  std::string method = "certified";
+  double error = 0.02;
+  std::vector<std::string> lights;
+  DaylightOptions daylight;
+  int threads = 0;
+  uint64_t seed = 0;
+  bool is_quiet = false;
+};
+void add_glare(CLI::App& app, GlareCommand& command);  // adds its options
+int run_glare(GlareCommand command);
 
 struct MeasureCommand {
   SceneChoice scene;

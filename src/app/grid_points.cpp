@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
+#include "import/file.h"
 #include "lighting/option_text.h"
 #include "report/find_surfaces.h"
 
@@ -60,13 +62,50 @@ FoundSurfaces surfaces_of(const PreparedScene& scene, const Vec3& up, const Grid
   }
 }
 
+// Adds a sensor grid of the file.
+void add(const SensorGrid& grid, PointList& list) {
+  if (grid.positions.size() > most_points - std::min(most_points, list.points.size()))
+    throw UsageError("--grid: more than a million points");
+  for (size_t i = 0; i < grid.positions.size(); ++i) {
+    list.points.push_back({grid.positions[i], grid.directions[i]});
+    list.surfaces.push_back(grid.name);
+  }
+}
+
+// Adds the sensor grids of that name, or of the room of that name. Returns false if there are none.
+bool add_named(const Scene& scene, const std::string& name, PointList& list) {
+  bool is_any = false;
+  for (const bool by_room : {false, true}) {
+    for (const SensorGrid& grid : scene.grids) {
+      if ((by_room ? grid.room : grid.name) != name) continue;
+      add(grid, list);
+      is_any = true;
+    }
+    if (is_any) return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+bool may_have_sensor_grids(const std::string& file) {
+  const std::string ending = lower_case_ending(without_gz(file));
+  return ending == "hbjson" || ending == "json";
+}
+
+void add_sensor_grids(const Scene& scene, PointList& list) {
+  if (scene.grids.empty())
+    throw UsageError(
+        "measure: the model has no sensor grids: give --points FILE.csv or --grid NODE");
+  for (const SensorGrid& grid : scene.grids) add(grid, list);
+}
 
 void add_grids(const PreparedScene& scene, const GridChoice& choice, const Vec3& up,
                PointList& list) {
   if (choice.grids.empty()) return;
   list.surfaces.resize(list.points.size());
   for (const std::string& text : choice.grids) {
+    if (add_named(scene.scene, text, list)) continue;
     const Grid g = parse_grid(text);
     for (AssessedSurface s : surfaces_of(scene, up, g, choice.border).surfaces) {
       s.spacing = g.spacing;

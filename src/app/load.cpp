@@ -19,8 +19,23 @@
 
 namespace troffer {
 
+namespace {
+
+// Adds GROUP=N.
+void add_state(const std::string& text, std::map<std::string, size_t>& states) {
+  constexpr double most_states = 1e6;
+  const size_t at = text.rfind('=');
+  const auto number = at == std::string::npos ? std::nullopt : parse_number(text.substr(at + 1));
+  if (!number || at == 0 || !(*number >= 0 && *number < most_states) ||
+      *number != std::floor(*number))
+    throw UsageError("--state: '" + printable(text) + "' is not GROUP=NUMBER");
+  states[text.substr(0, at)] = size_t(*number);
+}
+
+}  // namespace
+
 void add_scene_choice(CLI::App& app, SceneChoice& choice) {
-  app.add_option("scene", choice.file, "Scene: .gltf .glb .pbrt .obj .ply .stl .xml .rad")
+  app.add_option("scene", choice.file, "Scene: .gltf .glb .pbrt .obj .ply .stl .xml .rad .hbjson")
       ->required();
   app.add_option("--variant", choice.options.variant, "glTF: name of the material variant");
   app.add_option("--time", choice.options.time,
@@ -28,9 +43,17 @@ void add_scene_choice(CLI::App& app, SceneChoice& choice) {
       ->check(number_between(-1e9, 1e9));
   app.add_option("--animation", choice.options.animation,
                  "glTF: name of the animation [the first]");
-  app.add_option("--up", choice.up,
-                 "Upward direction: x, y, z, -y … or X,Y,Z [glTF: y; Radiance: z; others: guessed "
-                 "from cameras, names and objects that stand on others]");
+  app.add_option_function<std::vector<std::string>>(
+         "--state",
+         [&choice](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts) add_state(text, choice.options.states);
+         },
+         "HBJSON: number of the state, from 0, that a dynamic group shows [0]; may be repeated")
+      ->allow_extra_args(false);
+  app.add_option(
+      "--up", choice.up,
+      "Upward direction: x, y, z, -y … or X,Y,Z [glTF: y; Radiance, HBJSON: z; others: guessed "
+      "from cameras, names and objects that stand on others]");
   app.add_option(
          "--emission-scale", choice.options.emission_scale,
          "Factor on the emission of surfaces in the file, such as 683 for files from Blender")

@@ -12,7 +12,7 @@ namespace {
 // A namespace of its own: other sources may use the same names.
 namespace option_rows {
 
-constexpr const char* scenes = "gltf|glb|pbrt|obj|ply|stl|xml|rad|gz";
+constexpr const char* scenes = "gltf|glb|pbrt|obj|ply|stl|xml|rad|hbjson|json|gz";
 constexpr const char* pictures = "exr|hdr|pfm|png";
 constexpr const char* pictures_read = "exr|hdr|pfm|png|jpg";
 constexpr const char* surroundings = "exr|hdr|pfm|png|jpg";
@@ -34,7 +34,10 @@ constexpr const char* other = "Other";
 
 constexpr std::array rows{
     // Input
-    OptionRow{"info scene", input, "FILE", "gltf|glb|pbrt|obj|ply|stl|xml|rad|gz|ies|ldt"},
+    OptionRow{"info scene", input, "FILE",
+              "gltf|glb|pbrt|obj|ply|stl|xml|rad|hbjson|json|gz|ies|ldt"},
+    OptionRow{"glare scene", input, "SCENE",
+              "gltf|glb|pbrt|obj|ply|stl|xml|rad|hbjson|json|gz|exr|hdr|pfm"},
     OptionRow{"scene", input, "SCENE", scenes},
     OptionRow{"image", input, "IMAGE", pictures_read},
     OptionRow{"reference", input, "REFERENCE", pictures_read},
@@ -48,6 +51,7 @@ constexpr std::array rows{
     OptionRow{"--variant", input, "NAME", ""},
     OptionRow{"--time", input, "SECONDS", ""},
     OptionRow{"--animation", input, "NAME", ""},
+    OptionRow{"--state", input, "GROUP=N", ""},
     // Assessment
     OptionRow{"--surface", assessment, "NODE[:PROFILE]", ""},
     OptionRow{"--surfaces", assessment, "FILE", "json|csv"},
@@ -60,6 +64,12 @@ constexpr std::array rows{
     OptionRow{"--contributions", assessment, "ON", ""},
     OptionRow{"--cylindrical", assessment, "ON", ""},
     OptionRow{"--compare", assessment, "FILE", "json"},
+    OptionRow{"--threshold", assessment, "CD/M2", ""},
+    OptionRow{"--task", assessment, "X,Y", ""},
+    OptionRow{"--task-angle", assessment, "RADIANS", ""},
+    OptionRow{"--search-radius", assessment, "RADIANS", ""},
+    OptionRow{"--peak", assessment, "CD/M2", ""},
+    OptionRow{"--no-low-light", assessment, "", ""},
     // View
     OptionRow{"--pictures", view, "ON", ""},
     OptionRow{"--size", view, "WxH", ""},

@@ -14,7 +14,7 @@ constexpr float fineness_of_dark = 0.125f;
 
 // True if light passes through and hardly any is reflected diffusely.
 bool is_clear(const Material& m) {
-  return m.kind == MaterialKind::dielectric ||
+  return m.kind == MaterialKind::dielectric || m.kind == MaterialKind::angular ||
          (m.transmission.value > 0.5f && m.transmission.texture < 0);
 }
 

@@ -259,6 +259,36 @@ bool sample_rough(const Bsdf& b, const Vec3& viewer, float u_side, const Vec2& u
   return refract(wo, m, c, b.eta, wi) && wi.z < 0;
 }
 
+// Direction of the viewer's frame in the frame of an angular lobe.
+Vec3 to_layer(const Bsdf& b, const Vec3& w) {
+  const Vec3 f = b.is_back ? Vec3{w.x, -w.y, -w.z} : w;  // front's frame
+  return {b.grain.y * f.x - b.grain.x * f.y, b.grain.x * f.x + b.grain.y * f.y, f.z};
+}
+Vec3 from_layer(const Bsdf& b, const Vec3& w) {
+  const Vec3 f{b.grain.y * w.x + b.grain.x * w.y, b.grain.y * w.y - b.grain.x * w.x, w.z};
+  return b.is_back ? Vec3{f.x, -f.y, -f.z} : f;
+}
+
+BsdfValue evaluate_angular(const Bsdf& b, const Vec3& wo, const Vec3& wi) {
+  if (!(wo.z > 0) || wi.z == 0 || !(std::abs(wi.z) <= 2)) return {};
+  const Vec3 o = to_layer(b, wo);
+  const float f_cos = b.angular->value(o, to_layer(b, wi)) * std::abs(wi.z);
+  const float all = b.angular->albedo(o);
+  return all > 0 ? BsdfValue{Rgb{f_cos}, f_cos / all} : BsdfValue{};
+}
+
+bool sample_angular(const Bsdf& b, const Vec3& wo, float u_lobe, const Vec2& u, BsdfSample& out) {
+  const Vec3 o = to_layer(b, wo);
+  Vec3 wi;
+  if (!b.angular->sample(o, u_lobe, u, wi, out.is_delta)) return false;
+  const float all = b.angular->albedo(o);
+  out.wi = out.is_delta ? -wo : from_layer(b, wi);
+  out.is_transmission = out.wi.z < 0;
+  out.weight = Rgb{all};
+  if (!out.is_delta) out.pdf = b.angular->value(o, wi) * std::abs(wi.z) / all;
+  return out.is_delta || out.pdf > 0;
+}
+
 }  // namespace
 
 namespace {
@@ -271,6 +301,7 @@ BsdfValue evaluate_seen(const Bsdf& b, const Vec3& wo, const Vec3& wi, bool with
 }  // namespace
 
 BsdfValue evaluate_general(const Bsdf& b, const Vec3& wo, const Vec3& wi, bool with_pdf) {
+  if (b.angular != nullptr) return evaluate_angular(b, wo, wi);
   if (!(wo.z > 0) || wi.z == 0 || !(std::abs(wi.z) <= 2)) return {};
   if (wi.z < 0 && !b.has_transmission) return {};
   if (is_purely_delta(b)) return {};
@@ -282,6 +313,7 @@ bool sample_general(const Bsdf& b, const Vec3& viewer, float u_lobe, const Vec2&
                     BsdfSample& out) {
   out = {};
   if (!(viewer.z > 0)) return false;
+  if (b.angular != nullptr) return sample_angular(b, viewer, u_lobe, u, out);
   const Vec3 wo = b.is_grained ? to_grain(b, viewer) : viewer;
   const Gains g = gains_of(b, wo);
   const Choice choice = choice_at(b, g, wo.z);
@@ -315,7 +347,9 @@ bool sample_general(const Bsdf& b, const Vec3& viewer, float u_lobe, const Vec2&
   return is_finite(out.weight) && !out.weight.is_black();
 }
 
-Rgb straight_transmittance(const Bsdf& b, float cos_o) {
+Rgb straight_transmittance(const Bsdf& b, const Vec3& wo) {
+  const float cos_o = wo.z;
+  if (b.angular != nullptr && cos_o > 0) return Rgb{b.angular->straight(to_layer(b, wo))};
   if (!b.is_pane || !(cos_o > 0)) return Rgb{0};
   if (!b.has_transmission) return mirrored_reflectance(b, cos_o);
   const Rgb below = facet_split(b, std::min(cos_o, 1.0f)).transmitted;
@@ -339,6 +373,7 @@ LobeConstants lobe_constants(const Bsdf& b, float cos_o) {
 Rgb albedo(const Bsdf& b, float cos_o) {
   if (b.is_lambertian) return b.diffuse + b.through;
   if (!(cos_o > 0)) return Rgb{0};
+  if (b.angular != nullptr) return Rgb{b.angular->mean_albedo(!b.is_back, cos_o)};
   if (!b.through.is_black()) {
     Bsdf near = b;
     near.through = Rgb{0};

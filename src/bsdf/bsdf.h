@@ -26,6 +26,7 @@
 #include "base/rgb.h"
 #include "base/vec.h"
 #include "base/warp.h"
+#include "bsdf/angular_lobe.h"
 #include "bsdf/clear_coat.h"
 #include "bsdf/ggx_grained.h"
 #include "bsdf/sheen.h"
@@ -67,6 +68,10 @@ struct Bsdf {
   Rgb absorbed;               // in a thin sheet: Material::absorption
   Rgb reflected_share{1};     // factor on the reflectance of conductor, coat or glass
   bool is_absorbing = false;  // transmitted light enters or leaves an absorbing body
+
+  // MaterialKind::angular: the only lobe. `grain` is then the direction of up in the front's frame.
+  const AngularLobe* angular = nullptr;
+  bool is_back = false;  // angular: the viewer is behind the surface
 
   ThinFilm film;  // for Fresnel::schlick and Fresnel::glass
 
@@ -169,8 +174,9 @@ Bsdf through_part(const Bsdf& bsdf);
 // wo) / pi towards wo, times the irradiance in which each direction is weighted by this.
 float coat_share(const Bsdf& bsdf, float cos_i);
 
-// Returns the transmittance of a pane straight through, for a cosine > 0; 0 for other surfaces.
-Rgb straight_transmittance(const Bsdf& bsdf, float cos_o);
+// Returns the transmittance of a pane straight through, for wo.z > 0; 0 for other surfaces. It
+// depends on the cosine alone, except for matrices.
+Rgb straight_transmittance(const Bsdf& bsdf, const Vec3& wo);
 // Returns the mirror reflectance of a smooth surface, such as a pane, about its own normal; 0 for
 // other surfaces.
 Rgb mirrored_reflectance(const Bsdf& bsdf, float cos_o);

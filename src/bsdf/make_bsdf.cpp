@@ -289,6 +289,14 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
   if (glass > 0) add_glass(b, in, glass, safe01(tint * specular), base);
 }
 
+void set_angular(Bsdf& b, const Inputs& in) {
+  b.angular = &in.tables.angular(in.prepared.angular);
+  b.has_separable = b.has_transmission = b.is_thin = true;
+  b.is_back = !in.is_front;
+  b.is_pane = in.prepared.is_pane;
+  b.grain = in.uv.grain;
+}
+
 }  // namespace
 
 Bsdf make_bsdf(const BsdfTables& tables, const std::vector<Material>& materials,
@@ -317,6 +325,9 @@ Bsdf make_bsdf(const BsdfTables& tables, const std::vector<Material>& materials,
       break;
     case MaterialKind::metallic_roughness:
       set_metallic_roughness(b, in);
+      break;
+    case MaterialKind::angular:
+      set_angular(b, in);
       break;
   }
   return b;

@@ -9,6 +9,7 @@ Bsdf diffuse_part(const Bsdf& b) {
   if (b.is_lambertian) return d;
   d.fresnel = Bsdf::Fresnel::none;
   d.has_transmission = d.is_smooth = false;
+  d.angular = nullptr;
   d.soft = {};
   d.clear.is_shown = d.cover.is_shown = false;
   d.glass_lost_reflected = d.glass_lost_transmitted = Rgb{0};
@@ -31,8 +32,9 @@ Bsdf specular_part(const Bsdf& b) {
   s.is_lambertian = false;
   s.coat = Bsdf::Coat::none;
   s.diffuse = Rgb{0};
-  s.has_separable = s.soft.kind != SoftLobe::Kind::none || s.cover.has_lobe() ||
-                    !s.glass_lost_reflected.is_black() || !s.glass_lost_transmitted.is_black();
+  s.has_separable = s.angular != nullptr || s.soft.kind != SoftLobe::Kind::none ||
+                    s.cover.has_lobe() || !s.glass_lost_reflected.is_black() ||
+                    !s.glass_lost_transmitted.is_black();
   return s;
 }
 

@@ -35,6 +35,7 @@ TableNeeds table_needs(const Material& m, float clear_ior) {
   bool is_glass = false;
   switch (m.kind) {
     case MaterialKind::diffuse:
+    case MaterialKind::angular:
       break;
     case MaterialKind::coated_diffuse:
       n.has_coat = is_rough;

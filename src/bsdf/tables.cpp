@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "bsdf/facet_lobe.h"
 #include "bsdf/fresnel.h"
@@ -117,6 +118,7 @@ BsdfTables::BsdfTables(const std::vector<Material>& materials) {
   if (needs_ggx) build_albedo_tables(ggx_, coats_, glasses_);
   if (needs_sheen) build_sheen_table(sheen_);
   if (needs_film) interference_ = make_interference_table();
+  build_angular_lobes(materials);
   build_grain_tables(materials);
   build_film_glass_tables(materials);
   for (size_t i = 0; i < reflectances; ++i)
@@ -140,6 +142,20 @@ int32_t BsdfTables::rough_coat_for(const Material& m, float alpha, float ior) {
                (t.shape == shape ? 0.0f : other_shape);
       },
       [&] { return make_rough_coat_table(shape, alpha, ior); });
+}
+
+// Materials with the same matrices and treatment of peaks share a lobe.
+void BsdfTables::build_angular_lobes(const std::vector<Material>& materials) {
+  std::map<std::pair<const AngularBsdf*, bool>, int32_t> known;
+  for (size_t k = 0; k < materials.size(); ++k) {
+    const Material& m = materials[k];
+    if (m.kind != MaterialKind::angular) continue;
+    const auto [at, is_new] =
+        known.insert({{m.angular.get(), m.has_sharp_peak}, int32_t(angulars_.size())});
+    if (is_new) angulars_.emplace_back(*m.angular, m.has_sharp_peak);
+    materials_[k].angular = at->second;
+    materials_[k].is_pane = angulars_[size_t(at->second)].has_straight();
+  }
 }
 
 // Runs after the other tables are built: tables under a clear coat read them.

@@ -9,6 +9,7 @@
 
 #include "base/rgb.h"
 #include "bsdf/albedo_table.h"
+#include "bsdf/angular_lobe.h"
 #include "bsdf/clear_coat.h"
 #include "bsdf/film_glass_table.h"
 #include "bsdf/grain_table.h"
@@ -30,6 +31,7 @@ struct PreparedMaterial {
   int32_t rough_coat = -1;        // table of a coat of constant width whose facets scatter once
   int32_t clear_inside = -1;      // table of the clear coat seen from below
   int32_t clear_coat = -1;        // table of the clear coat's index, if it can be rough
+  int32_t angular = -1;           // lobe of its matrices
   float clear_coat_ior = 1.5f;    // clamped like ior
   float dielectric_average = 0;   // cosine-weighted mean Fresnel reflectance from outside
   float plate_average = 0;        // the same for a thin plate
@@ -76,6 +78,7 @@ class BsdfTables {
   const FilmGlassTable& film_glass(int32_t i) const { return film_glasses_[size_t(i)]; }
   // Sets the rows of a clear coat from the material's tables.
   void set_rows(ClearCoat& clear, const PreparedMaterial& material) const;
+  const AngularLobe& angular(int32_t i) const { return angulars_[size_t(i)]; }
   const AlbedoTable& sheen() const { return sheen_; }
   const InterferenceTable& interference() const { return interference_; }
   // Returns the mean Fresnel reflectance of a conductor with eta = 1 and normal reflectance r.
@@ -92,11 +95,13 @@ class BsdfTables {
   std::vector<GrainTable> grains_;
   std::vector<RoughCoatTable> rough_coats_;
   std::vector<FilmGlassTable> film_glasses_;
+  std::vector<AngularLobe> angulars_;
   AlbedoTable sheen_;
   InterferenceTable interference_;
   std::array<float, reflectances> reflectance_average_{};
 
   int32_t rough_coat_for(const Material& m, float alpha, float ior);
+  void build_angular_lobes(const std::vector<Material>& materials);
   void build_grain_tables(const std::vector<Material>& materials);
   void build_film_glass_tables(const std::vector<Material>& materials);
 };

@@ -163,6 +163,15 @@ void GltfMaterialWriter::add_normal(int32_t normal, float scale, const char* nam
 }
 
 Json GltfMaterialWriter::surface(const Material& m) {
+  if (m.kind == MaterialKind::angular) {
+    warnings_.add("matrices of directional scattering (BSDF) are written as clear glass");
+    Material glass;
+    glass.name = m.name;
+    glass.kind = MaterialKind::dielectric;
+    glass.base_color.value = Rgb{1};
+    glass.is_thin = true;
+    return surface(glass);
+  }
   Json out;
   if (!m.name.empty()) out["name"] = m.name;
   add_base(m, out);

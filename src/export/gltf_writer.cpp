@@ -220,7 +220,10 @@ void GltfWriter::add_light(const Light& e) {
   add_node(e.name, std::move(node));
 }
 
-void GltfWriter::add_camera(const Camera& c) {
+void GltfWriter::add_camera(const Camera& any) {
+  if (any.kind == CameraKind::fisheye)
+    warnings_.add("glTF has no fisheye cameras: they are written as perspectives");
+  const Camera c = without_fisheye(any);
   const double aspect = c.width > 0 ? double(c.width) / c.height : double(c.aspect);
   double half = double(c.half_extent);
   if (!c.fov_is_vertical && aspect > 0 && aspect < 1) half /= aspect;

@@ -205,6 +205,9 @@ std::string PbrtMaterialWriter::material_text(const Material& m) {
       return fmt::format("\"dielectric\" \"float eta\" {}", m.ior) + roughness(m, power);
     case MaterialKind::metallic_roughness:
       return mixed_text(m);
+    case MaterialKind::angular:
+      warnings_.add("matrices of directional scattering (BSDF) are written as clear glass");
+      return "\"thindielectric\" \"float eta\" 1.5";
   }
   return "\"diffuse\"";
 }

@@ -50,7 +50,9 @@ class PbrtWriter {
 // Writes camera_from_world, column by column.
 void PbrtWriter::add_camera() {
   if (scene_.cameras.empty()) return;
-  const Camera& c = scene_.cameras[0];
+  if (scene_.cameras[0].kind == CameraKind::fisheye)
+    warnings_.add("fisheye cameras are written as perspectives");
+  const Camera c = without_fisheye(scene_.cameras[0]);
   if (scene_.cameras.size() > 1) warnings_.add("pbrt has one camera: the first one is written");
   const int height = c.height > 0 ? c.height : 768;
   const double aspect = c.aspect > 0 ? double(c.aspect) : 4.0 / 3;

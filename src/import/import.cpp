@@ -4,6 +4,7 @@
 #include "import/file.h"
 #include "import/gltf/gltf.h"
 #include "import/gltf/mesh_instancer.h"
+#include "import/hbjson/hbjson.h"
 #include "import/mesh/obj.h"
 #include "import/mesh/ply_scene.h"
 #include "import/mesh/stl.h"
@@ -25,14 +26,17 @@ Scene import_file(const std::string& path, const ImportOptions& options) {
         path, 0, 0,
         "is a Radiance octree, which is not supported: give the .rad file that it was made from");
   const bool is_gltf = ending == "gltf" || ending == "glb";
+  const bool is_hbjson = ending == "hbjson" || ending == "json";
   if (!is_gltf && ending != "pbrt" && ending != "obj" && ending != "xml" && ending != "rad" &&
-      ending != "stl" && ending != "ply")
+      ending != "stl" && ending != "ply" && !is_hbjson)
     throw InputError(path, 0, 0,
                      "is not a scene: its name should end in .gltf, .glb, .pbrt, .obj, .ply, .stl, "
-                     ".xml or .rad");
+                     ".xml, .rad or .hbjson");
   if (!is_gltf && options.is_any())
     throw UsageError("--variant, --time, --animation and --baked need a .gltf or .glb");
+  if (!is_hbjson && !options.states.empty()) throw UsageError("--state needs an .hbjson");
   if (size_of_file(path) == 0) throw InputError(path, 0, 0, "is empty");
+  if (is_hbjson) return import_hbjson(path, options.states);
   if (ending == "rad") return import_radiance(path);
   if (ending == "xml") return import_mitsuba(path, options.images);
   if (ending == "stl") return import_stl(path, {.progress = options.progress});

@@ -1,7 +1,7 @@
 // Import of scene files: glTF 2.0 (.gltf, .glb), pbrt-v4 (.pbrt), Wavefront OBJ (.obj), Mitsuba
-// (.xml), Radiance (.rad), STL and PLY meshes. The ending selects the format; a final ".gz" is
-// allowed. Unusable content throws InputError with file, line and column. Unsupported or
-// suspicious content adds a warning to Scene::warnings, which counts equal ones.
+// (.xml), Radiance (.rad), Honeybee (.hbjson, .json), STL and PLY meshes. The ending selects the
+// format; a final ".gz" is allowed. Unusable content throws InputError with file, line and column.
+// Unsupported or suspicious content adds a warning to Scene::warnings, which counts equal ones.
 #pragma once
 
 #include <string>

@@ -2,6 +2,7 @@
 // command line (app/load.cpp). Options that a format does not have are a UsageError there.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -15,7 +16,9 @@ struct ImportOptions {
   std::optional<double> time;            // seconds into an animation; none: at rest
   std::optional<std::string> animation;  // by name; none: the first
   bool shows_baked = false;              // glTF: show only the light baked into the file
-  TellProgress progress;                 // called while .obj, .ply and .stl files are read
+  // HBJSON: the state of dynamic groups by name, from 0; others show state 0.
+  std::map<std::string, size_t> states;
+  TellProgress progress;  // called while .obj, .ply and .stl files are read
   ImageUse images = ImageUse::read;
   // Factor on the emission of surfaces, except luminaires with a photometric web
   // (import/surface_emission.h).

@@ -24,7 +24,8 @@ constexpr double portal_tolerance = 1e-3;
 
 bool is_glass(const Scene& scene, const Mesh& mesh) {
   const Material& m = scene.materials[mesh.material];
-  return m.kind == MaterialKind::dielectric || m.transmission.value > 0;
+  return m.kind == MaterialKind::dielectric || m.kind == MaterialKind::angular ||
+         m.transmission.value > 0;
 }
 
 // Removes opaque parts that only mark a portal, so that they occlude nothing. Panes and emitting

@@ -52,7 +52,8 @@ void bind_load(py::module_& m) {
       py::arg("file"), py::kw_only(), py::arg("variant") = py::none(), py::arg("time") = py::none(),
       py::arg("animation") = py::none(), py::arg("emission_scale") = 1.0, py::arg("baked") = false,
       "Loads a scene from a path (str or os.PathLike): .gltf .glb .pbrt .obj .stl .ply .xml "
-      "(Mitsuba) or .rad. variant: name of a set of glTF materials. time: seconds into the "
+      "(Mitsuba), .rad or .hbjson. variant: name of a set of glTF materials. time: seconds into "
+      "the "
       "animation. emission_scale: factor on the emission of the file's surfaces. baked: shows the "
       "light that `troffer bake` wrote. Raises InputError.");
 }

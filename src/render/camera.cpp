@@ -33,8 +33,25 @@ ViewingCamera::ViewingCamera(const Camera& camera, int width, int height)
   step_ = Vec2{(x1 - x0) / float(width), (y0 - y1) / float(height)} * camera.half_extent;
 }
 
+namespace {
+
+// Returns the ray at angles x to the right and y up, in radians.
+Ray fisheye_ray(const Camera& c, float x, float y) {
+  const float r = std::sqrt(x * x + y * y), angle = std::min(r, pi_f);
+  const float across = r > 0 ? std::sin(angle) / r : 1.0f;
+  Ray ray;
+  ray.origin = c.position;
+  ray.direction = normalize(c.forward * std::cos(angle) + (c.right * x + c.up * y) * across);
+  if (c.near_clip > 0) ray.t_min = c.near_clip;
+  if (c.far_clip > 0) ray.t_max = c.far_clip;
+  return ray;
+}
+
+}  // namespace
+
 Ray ViewingCamera::ray(const Vec2& raster, const Vec2& lens) const {
   const float x = corner_.x + raster.x * step_.x, y = corner_.y + raster.y * step_.y;
+  if (camera_.kind == CameraKind::fisheye) return fisheye_ray(camera_, x, y);
   const Vec3 across = camera_.right * x + camera_.up * y;
   const bool is_perspective = camera_.kind == CameraKind::perspective;
   Vec3 origin = is_perspective ? camera_.position : camera_.position + across;
@@ -61,6 +78,8 @@ RayCone ViewingCamera::cone(int rays) const {
 }
 
 bool ViewingCamera::raster_of(const Vec3& p, Vec2& raster) const {
+  // Callers draw straight lines between raster positions, which a fisheye bends.
+  if (camera_.kind == CameraKind::fisheye) return false;
   const Vec3 d = p - camera_.position;
   const float along = dot(d, camera_.forward);
   if (!(along > 1e-6f * length(d))) return false;

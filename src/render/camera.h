@@ -18,14 +18,15 @@ class ViewingCamera {
   // point on the lens.
   Ray ray(const Vec2& raster, const Vec2& lens) const;
   // Inverse of ray(): the raster position where a point is seen through the middle of the lens.
-  // Returns false if the point is not in front of the camera.
+  // Returns false if the point is not in front of the camera, and for fisheyes.
   bool raster_of(const Vec3& p, Vec2& raster) const;
   // Returns the footprint of one of `rays` rays of a pixel: 1 / √rays of the pixel's width, at
   // least an eighth. The mean of the rays is then blurred by no more than a pixel.
   RayCone cone(int rays) const;
   int longer_side() const { return longer_side_; }  // pixels
   bool has_lens() const { return camera_.lens_radius > 0; }
-  bool is_perspective() const { return camera_.kind == CameraKind::perspective; }
+  // True if all rays start at one point.
+  bool is_perspective() const { return camera_.kind != CameraKind::orthographic; }
   // Returns the unit vector from a point to the eye.
   Vec3 towards_eye(const Vec3& p) const {
     return is_perspective() ? normalize(camera_.position - p) : -camera_.forward;

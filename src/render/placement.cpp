@@ -39,7 +39,8 @@ struct Outlook {
 };
 
 bool lets_light_through(const Material& m) {
-  return m.kind == MaterialKind::dielectric || m.transmission.value > 0;
+  return m.kind == MaterialKind::dielectric || m.kind == MaterialKind::angular ||
+         m.transmission.value > 0;
 }
 
 Outlook outlook(const PreparedScene& scene, const std::vector<Ray>& rays) {

@@ -163,6 +163,20 @@ double position_index(const Vec3d& towards, const Vec3d& line_of_sight, const Ve
   return index_above(off_axis > 0 ? tau : 0, deg_from_rad(std::atan(off_axis)));
 }
 
+double wide_position_index(const Vec3d& direction) {
+  constexpr double largest = 16, farthest = 3;  // evalglare.c, get_posindex
+  const Vec3d w = normalize(direction);
+  // Below, evalglare takes the tangents of the angles from the two planes through the line of sight
+  // for the distances beside and below it.
+  const auto tangent = [](double sine) {
+    return sine / std::sqrt(std::max(1 - sine * sine, 1e-12));
+  };
+  if (w.y < 0) return index_below(std::min(std::hypot(tangent(w.x), tangent(w.y)), farthest));
+  const double off_axis = std::hypot(w.x, w.y), tau = deg_from_rad(std::atan2(std::abs(w.x), w.y));
+  const double sigma = deg_from_rad(std::atan2(off_axis, std::max(w.z, 0.0)));
+  return std::min(index_above(off_axis > 0 ? tau : 0, sigma), largest);
+}
+
 std::vector<SeenLuminaire> seen_luminaires(const PreparedScene& scene, const Observer& observer,
                                            const Vec3d& up, uint64_t seed, int samples) {
   const Eye eye(scene, observer, up);

@@ -33,6 +33,11 @@ struct Observer {
 // the source is ahead.
 double position_index(const Vec3d& towards, const Vec3d& line_of_sight, const Vec3d& up);
 
+// The same for any direction ahead, at most 16, as evalglare has it (report/daylight_glare.h). It
+// equals position_index() above the line of sight, and straight below it. z of the direction is the
+// line of sight, y is up.
+double wide_position_index(const Vec3d& direction);
+
 // A luminaire as an observer sees it: lights of one name whose surfaces share corners.
 struct SeenLuminaire {
   std::string name;

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/rgb.h"
+#include "base/vec.h"
+#include "scene/angular_bsdf.h"
 #include "scene/texture.h"
 
 namespace troffer {
@@ -33,6 +36,8 @@ enum class MaterialKind : uint8_t {
   // glTF: mix by `metallic` of base_color metal and coated diffuse; `transmission` of the diffuse
   // part passes as through glass
   metallic_roughness,
+  // matrices over patches of directions (Material::angular), such as LBNL WINDOW's
+  angular,
 };
 
 // Relation between `roughness` and the GGX width alpha.
@@ -118,6 +123,13 @@ struct Material {
   bool is_alpha_blended = false;      // only with is_alpha_masked: alpha is the coverage
   FloatInput alpha{1, no_texture, 3};
   float alpha_cutoff = 0.5f;
+  // angular: the matrices, shared by materials; never null. Their y axis is `angular_up`, projected
+  // onto the surface.
+  std::shared_ptr<const AngularBsdf> angular;
+  Vec3 angular_up{0, 0, 1};
+  // angular: light of a patch that passes straight on, above the level of the patches around it,
+  // stays a sharp beam.
+  bool has_sharp_peak = false;
   // Light that it would mirror passes straight through instead (scene/mirror_image.h).
   bool is_mirror_pane = false;
 };
@@ -155,6 +167,10 @@ void for_each_value(const Material& m, const Visit& visit) {
   visit(m.absorption);
   visit(uint64_t(m.back_faces));
   visit(m.alpha_cutoff);
+  if (m.angular == nullptr) return;
+  visit(hash_of(*m.angular));
+  visit(uint64_t(m.has_sharp_peak));
+  for (size_t i = 0; i < 3; ++i) visit(m.angular_up[i]);
 }
 
 // True if the coat has another normal than the base.

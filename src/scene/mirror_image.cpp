@@ -145,7 +145,7 @@ class ImageMaker {
 };
 
 bool is_clear(const Material& m) {
-  return m.kind == MaterialKind::dielectric ||
+  return m.kind == MaterialKind::dielectric || m.kind == MaterialKind::angular ||
          (m.kind == MaterialKind::metallic_roughness && m.transmission.value > 0);
 }
 

@@ -27,10 +27,11 @@ struct FormatRule {
 
 // OBJ exporters turn scenes to y by default, STL exporters keep z; pbrt and PLY files have either.
 constexpr FormatRule formats[] = {
-    {"gltf", "glTF", true, 'y', 0},     {"glb", "glTF", true, 'y', 0},
-    {"rad", "Radiance", true, 'z', 0},  {"xml", "Mitsuba", false, 'y', 2},
-    {"pbrt", "pbrt", false, 'y', 0.25}, {"obj", "OBJ", false, 'y', 1},
-    {"ply", "PLY", false, 'y', 0.25},   {"stl", "STL", false, 'z', 1},
+    {"gltf", "glTF", true, 'y', 0},       {"glb", "glTF", true, 'y', 0},
+    {"rad", "Radiance", true, 'z', 0},    {"xml", "Mitsuba", false, 'y', 2},
+    {"hbjson", "Honeybee", true, 'z', 0}, {"json", "Honeybee", true, 'z', 0},
+    {"pbrt", "pbrt", false, 'y', 0.25},   {"obj", "OBJ", false, 'y', 1},
+    {"ply", "PLY", false, 'y', 0.25},     {"stl", "STL", false, 'z', 1},
 };
 constexpr FormatRule no_format{"", "scene", false, 'y', 0.25};
 

@@ -84,4 +84,12 @@ Scene with_only_lights(Scene scene, const std::vector<std::string>& names) {
   return scene;
 }
 
+Camera without_fisheye(Camera camera) {
+  if (camera.kind != CameraKind::fisheye) return camera;
+  camera.kind = CameraKind::perspective;
+  camera.half_extent = std::min(std::tan(std::min(camera.half_extent, 1.0f)), 1.0f);
+  camera.has_screen_window = false;
+  return camera;
+}
+
 }  // namespace troffer

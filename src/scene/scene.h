@@ -18,6 +18,7 @@
 #include "scene/light.h"
 #include "scene/light_web.h"
 #include "scene/material.h"
+#include "scene/sensor_grid.h"
 #include "scene/texture.h"
 
 namespace troffer {
@@ -67,7 +68,8 @@ struct Disk {
   int32_t light = no_light;
 };
 
-enum class CameraKind : uint8_t { perspective, orthographic };
+// fisheye: the distance from the image's middle is proportional to the angle from `forward`.
+enum class CameraKind : uint8_t { perspective, orthographic, fisheye };
 
 // right, up and forward are unit and orthogonal, of either handedness (pbrt mirrors). The image
 // plane at distance 1 spans [-1,1] × half_extent along the shorter image axis, or along the
@@ -76,7 +78,7 @@ struct Camera {
   std::string name;
   CameraKind kind = CameraKind::perspective;
   Vec3 position, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
-  float half_extent = 0.5f;  // tan(fov/2); orthographic: half the height in metres
+  float half_extent = 0.5f;  // tan(fov/2); orthographic: half the height in metres; fisheye: fov/2
   bool fov_is_vertical = true;
   bool has_screen_window = false;
   std::array<float, 4> screen_window{-1, 1, -1, 1};  // pbrt: xmin xmax ymin ymax × half_extent
@@ -87,6 +89,9 @@ struct Camera {
   int width = 0, height = 0;  // image size that the file asks for; 0 if none
   float aspect = 0;           // width / height that the file asks for; 0 if none
 };
+
+// Returns the same view as a perspective, at most 90° wide, for uses that know no fisheyes.
+Camera without_fisheye(Camera camera);
 
 struct Scene {
   std::string file;  // as given on the command line
@@ -104,6 +109,8 @@ struct Scene {
   std::vector<LightWeb> webs;
   std::vector<Light> lights;
   std::vector<Camera> cameras;
+  std::vector<SensorGrid> grids;
+  std::vector<DynamicGroup> dynamic_groups;
   bool is_photometric = false;  // emission in cd/m² (glTF); else W/(m² sr)
   // Encoded bytes of the images that importers left out, if they were told to leave images out.
   std::optional<uint64_t> skipped_image_bytes;

@@ -306,6 +306,15 @@ void disk_surface(const Scene& scene, const Ray& ray, const Hit& hit, const RayC
   s.light = disk.light;
 }
 
+// Sets the direction of up of an angular material. It is arbitrary where the surface is level.
+void set_up(const Scene& scene, Surface& s) {
+  const Material& m = scene.materials[s.material];
+  if (m.kind != MaterialKind::angular) return;
+  const Vec3 up = Frame(s.shading_normal).to_local(m.angular_up);
+  const float l = std::sqrt(up.x * up.x + up.y * up.y);
+  s.uv.grain = l > 1e-6f * length(m.angular_up) ? Vec2{up.x / l, up.y / l} : Vec2{0, 1};
+}
+
 }  // namespace
 
 void surface_at(const Scene& scene, const Ray& ray, const Hit& hit, Surface& out,
@@ -318,6 +327,7 @@ void surface_at(const Scene& scene, const Ray& ray, const Hit& hit, Surface& out
     sphere_surface(scene, ray, hit, cone, out);
   else
     disk_surface(scene, ray, hit, cone, out);
+  set_up(scene, out);
 }
 
 Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {

@@ -35,7 +35,7 @@ Rgb SceneGlass::transmittance(const Ray& ray, const Hit& hit) const {
   make_vertex(scene_, unit, at, v);
   if (!is_pane(v.surface.material)) return Rgb{1};  // a sphere or disk that is not a pane
   const Bsdf bsdf = make_bsdf(tables_, scene_, v.surface.material, v.surface.uv, v.is_front);
-  return straight_transmittance(bsdf, v.wo.z);
+  return straight_transmittance(bsdf, v.wo);
 }
 
 }  // namespace troffer

@@ -3,6 +3,9 @@
 // channel, in [0,1].
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "bsdf/bsdf.h"
 #include "scene/scene.h"
 #include "trace/panes.h"
@@ -14,10 +17,12 @@ class SceneGlass final : public PaneGlass {
   SceneGlass(const Scene& scene, const BsdfTables& tables) : scene_(scene), tables_(tables) {}
   bool is_pane(uint32_t material) const override { return tables_.material(material).is_pane; }
   bool is_even(uint32_t material) const override {
-    return !has_textured_input(scene_.materials[material]);
+    const Material& m = scene_.materials[material];
+    return !has_textured_input(m) && m.kind != MaterialKind::angular;
   }
   Rgb transmittance_at(uint32_t material, float cosine) const override {
-    return straight_transmittance(make_bsdf(tables_, scene_, material, {}, true), cosine);
+    const Vec3 wo{std::sqrt(std::max(0.0f, 1 - cosine * cosine)), 0, cosine};
+    return straight_transmittance(make_bsdf(tables_, scene_, material, {}, true), wo);
   }
   Rgb transmittance(const Ray& ray, const Hit& hit) const override;
 

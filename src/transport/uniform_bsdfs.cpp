@@ -12,7 +12,8 @@ namespace {
 constexpr size_t most_materials = 1024;
 
 bool is_even(const Material& m) {
-  return !has_textured_input(m) && !has_own_coat_normal(m) && !(m.anisotropy.value > 0);
+  return !has_textured_input(m) && !has_own_coat_normal(m) && !(m.anisotropy.value > 0) &&
+         m.kind != MaterialKind::angular;
 }
 
 }  // namespace

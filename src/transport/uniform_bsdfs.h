@@ -15,7 +15,7 @@ class UniformBsdfs {
  public:
   UniformBsdfs(const Scene& scene, const BsdfTables& tables);
 
-  // Returns null if the material has textures, anisotropy, a coat normal map or two sides
+  // Returns null if the material has textures, anisotropy, matrices, a coat normal map or two sides
   // (transport/two_sides.h), or is not among the first 1024. Use make_bsdf() then.
   const SurfaceScattering* find(uint32_t material, bool is_front) const {
     const size_t i = 2 * size_t(material) + (is_front ? 0 : 1);

@@ -120,7 +120,7 @@ bool step(Walk& walk, const Vertex& v, const Bsdf& bsdf, float lobe, const Vec2&
 }
 
 bool pass_pane(Walk& walk, const Vertex& v, const Bsdf& bsdf) {
-  walk.throughput *= straight_transmittance(bsdf, v.wo.z);
+  walk.throughput *= straight_transmittance(bsdf, v.wo);
   if (walk.throughput.is_black()) return false;
   walk.ray.origin = offset_origin(v.surface, walk.ray.direction);
   ++walk.vertex;

@@ -49,7 +49,8 @@ nlohmann::json json_of(const Vec3d& v) {
   return {v.x, v.y, v.z};
 }
 
-nlohmann::json json_of_camera(const Camera& c, const Vec3d& origin) {
+nlohmann::json json_of_camera(const Camera& any, const Vec3d& origin) {
+  const Camera c = without_fisheye(any);
   return {{"name", c.name},
           {"eye", json_of(Vec3d(c.position) + origin)},
           {"forward", json_of(Vec3d(c.forward))},
@@ -62,7 +63,7 @@ nlohmann::json json_of_camera(const Camera& c, const Vec3d& origin) {
 }
 
 Camera camera_of_json(const nlohmann::json& object, const Camera& base, const Vec3d& origin) {
-  Camera c = base;
+  Camera c = without_fisheye(base);
   c.position = Vec3(vector_in(object, "eye") - origin);
   const Vec3 forward(vector_in(object, "forward")), up(vector_in(object, "up"));
   const Vec3 side = cross(forward, up);

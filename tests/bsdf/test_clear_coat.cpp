@@ -169,16 +169,17 @@ TEST_CASE("a sheet under coats equals two coated faces") {
   const Bsdf sheet = s.at(1);
   CHECK(is_purely_delta(sheet));
   CHECK(has_one_mirror(sheet));
-  CHECK(double(straight_transmittance(sheet, 1).g) == doctest::Approx(through).epsilon(1e-4));
+  CHECK(double(straight_transmittance(sheet, direction(1)).g) ==
+        doctest::Approx(through).epsilon(1e-4));
   CHECK(double(mirrored_reflectance(sheet, 1).g) == doctest::Approx(back).epsilon(1e-3));
   for (const float c : {0.1f, 0.5f, 0.9f}) {
     const Scattered e = scattered(sheet, direction(c), 1u << 12);
-    CHECK(double(straight_transmittance(sheet, c).g) ==
+    CHECK(double(straight_transmittance(sheet, direction(c)).g) ==
           doctest::Approx(e.transmitted).epsilon(2e-3));
     CHECK(double(mirrored_reflectance(sheet, c).g) == doctest::Approx(e.reflected).epsilon(2e-3));
     // Rough coats take nearly as much of the transmitted light, but only the layer below them
     // mirrors.
-    CHECK(double(straight_transmittance(s.at(2), c).g) ==
+    CHECK(double(straight_transmittance(s.at(2), direction(c)).g) ==
           doctest::Approx(e.transmitted).epsilon(0.25));
     CHECK(mirrored_reflectance(s.at(2), c).g < mirrored_reflectance(sheet, c).g);
   }

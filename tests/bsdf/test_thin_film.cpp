@@ -112,13 +112,13 @@ TEST_CASE("surfaces under a film keep their energy, and change colour with the a
                          {"nearly", tinted},
                          {"dark", dark}};
   for (const float c : {0.2f, 0.7f, 1.0f}) {
-    const Rgb clear = straight_transmittance(sheets.at(0), c);
-    const Rgb nearly = straight_transmittance(sheets.at(1), c);
+    const Rgb clear = straight_transmittance(sheets.at(0), direction(c));
+    const Rgb nearly = straight_transmittance(sheets.at(1), direction(c));
     for (size_t k = 0; k < 3; ++k)
       CHECK(clear[k] == doctest::Approx(double(nearly[k])).epsilon(1e-3));
     // The first face keeps its colours even if no light returns from the second.
     const Rgb mirrored = mirrored_reflectance(sheets.at(2), c);
-    CHECK(straight_transmittance(sheets.at(2), c).b < 1e-6f);
+    CHECK(straight_transmittance(sheets.at(2), direction(c)).b < 1e-6f);
     CHECK(mirrored.b < mirrored_reflectance(sheets.at(0), c).b);
     CHECK(mirrored.b > 0.3f * mirrored_reflectance(sheets.at(0), c).b);
   }

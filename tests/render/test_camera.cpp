@@ -176,3 +176,25 @@ TEST_CASE("a scene without camera gets one inside its bounds; an empty scene get
   }
   CHECK(c.up.z > 0.5f);
 }
+
+TEST_CASE("a fisheye spaces angles evenly in all directions") {
+  Camera c;
+  c.kind = CameraKind::fisheye;
+  c.half_extent = pi_f / 2;
+  constexpr float n = 200;
+  for (const float share : {0.0f, 0.25f, 0.5f, 1.0f}) {
+    // Along a row, a column and a diagonal.
+    const float reach = share * n / 2, slanted = reach / std::sqrt(2.0f);
+    for (const Vec2 at : {Vec2{n / 2 + reach, n / 2}, Vec2{n / 2, n / 2 - reach},
+                          Vec2{n / 2 - slanted, n / 2 + slanted}})
+      CHECK(angle_deg(c, int(n), int(n), at.x, at.y) ==
+            doctest::Approx(90 * double(share)).epsilon(1e-3).scale(1));
+  }
+  const ViewingCamera v(c, int(n), int(n));
+  check_close(v.ray({n, n / 2}, middle_of_lens).direction, {1, 0, 0});
+  check_close(v.ray({n / 2, 0}, middle_of_lens).direction, {0, 1, 0});
+  // The corners look behind the camera, at √2 times 90°.
+  CHECK(angle_deg(c, int(n), int(n), 0, 0) == doctest::Approx(127.28).epsilon(1e-3));
+  Vec2 raster;
+  CHECK_FALSE(v.raster_of({0, 0, -1}, raster));
+}

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "scene/light.h"
@@ -70,6 +71,25 @@ TEST_CASE("any change of a material that affects scattering changes its values")
     change(m);
     CHECK(values_of(m) != values_of(plain));
   }
+}
+
+TEST_CASE("any change of matrices changes a material's values") {
+  const auto with = [](float value, bool is_sharp, float up) {
+    AngularBsdf b;
+    b.to_front = {klems_quarter(), klems_quarter(), std::vector<float>(41 * 41, 0.1f)};
+    b.to_front.values[77] = value;
+    Material m;
+    m.kind = MaterialKind::angular;
+    m.angular = std::make_shared<const AngularBsdf>(b);
+    m.has_sharp_peak = is_sharp;
+    m.angular_up.y = up;
+    return values_of(m);
+  };
+  const auto plain = with(0.1f, false, 0);
+  CHECK(plain == with(0.1f, false, 0));
+  CHECK(plain != with(0.2f, false, 0));
+  CHECK(plain != with(0.1f, true, 0));
+  CHECK(plain != with(0.1f, false, 1));
 }
 
 TEST_CASE("a material is textured if one of its inputs is") {

@@ -122,11 +122,21 @@ bool JsonNode::is_array() const {
   return value_->is_array();
 }
 
+bool JsonNode::is_string() const {
+  return value_->is_string();
+}
+
 std::optional<JsonNode> JsonNode::find(std::string_view key) const {
   if (!value_->is_object()) fail(expected("an object", *value_));
   const auto it = value_->find(std::string(key));
   if (it == value_->end()) return std::nullopt;
   return below(*it, key);
+}
+
+std::optional<JsonNode> JsonNode::find_value(std::string_view key) const {
+  std::optional<JsonNode> found = find(key);
+  if (found && found->value_->is_null()) found.reset();
+  return found;
 }
 
 JsonNode JsonNode::member(std::string_view key) const {

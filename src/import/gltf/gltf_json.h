@@ -22,6 +22,7 @@ class JsonNode {
  public:
   bool is_object() const;
   bool is_array() const;
+  bool is_string() const;
   // JSON pointer of the value, for example "/accessors/3/count".
   const std::string& pointer() const { return pointer_; }
   // Path of the file that the document was read from.
@@ -30,6 +31,8 @@ class JsonNode {
   // Members of an object. Each function fails if this value is not an object.
   std::optional<JsonNode> find(std::string_view key) const;
   JsonNode member(std::string_view key) const;  // fails if it is missing
+  // Like find(), but takes null as missing.
+  std::optional<JsonNode> find_value(std::string_view key) const;
   std::vector<std::string> keys() const;
 
   // Elements of an array. Each function fails if this value is not an array.

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/units.h"
+#include "import/radiance/radiance_bsdf.h"
 #include "import/radiance/radiance_gloss.h"
 
 namespace troffer {
@@ -207,7 +208,9 @@ RadianceLook RadianceMaterials::convert(const std::string& name, const RadianceM
   if (convert_emission(m, look)) {
     material.base_color.value = Rgb{0};
   } else {
-    material = radiance_material(m, scene_.warnings);
+    const bool is_angular = m.type == "BSDF" || m.type == "aBSDF";
+    material = is_angular ? radiance_bsdf(m, folder_, scene_.warnings)
+                          : radiance_material(m, scene_.warnings);
     material.base_color.value =
         clamp01(material.base_color.value * constant_part(patterns_of(m), false));
   }

@@ -55,7 +55,7 @@ class RadianceMaterials {
   std::map<const RadianceModifier*, Modifier> below_;
   // Stands in for undefined modifiers.
   Modifier grey_ = std::make_shared<const RadianceModifier>(
-      RadianceModifier{"void", "plastic", {{}, {0.5, 0.5, 0.5, 0, 0}}, {}, {}});
+      RadianceModifier{"void", "plastic", {{}, {0.5, 0.5, 0.5, 0, 0}}, {}, {}, {}});
   std::map<std::string, RadianceLook> looks_;
   int open_looks_ = 0;
 

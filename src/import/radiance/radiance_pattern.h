@@ -10,6 +10,7 @@
 #include "base/transform.h"
 #include "import/radiance/radiance_cal.h"
 #include "import/radiance/radiance_text.h"
+#include "scene/angular_bsdf.h"
 
 namespace troffer {
 
@@ -19,6 +20,8 @@ struct RadianceModifier {
   RadianceArguments arguments;
   SourcePlace place;
   Affine world;  // from the space of its file, which an xform may have transformed
+  // Matrices of a BSDF that does not name a file; null: it names one.
+  std::shared_ptr<const AngularBsdf> bsdf;
 };
 
 // The functions of a modifier. Evaluation changes the object: use one copy per thread.

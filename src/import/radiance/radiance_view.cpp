@@ -75,16 +75,21 @@ bool add_radiance_view(const std::string& line, const std::string& name, Scene& 
   if (!is_finite(forward) || !is_finite(right)) return false;
   Camera camera;
   camera.name = name;
-  const bool is_parallel = view.type == 'l';
-  if (!is_parallel && view.type != 'v')
+  const bool is_parallel = view.type == 'l', is_fisheye = view.type == 'a' || view.type == 'h';
+  if (view.type == 'h')
+    scene.warnings.add("view type \"-vth\" is shown as \"-vta\", which spaces angles evenly");
+  if (!is_parallel && !is_fisheye && view.type != 'v')
     scene.warnings.add(std::string("view type \"-vt") + view.type +
                        "\" is not supported: shown as perspective");
   const auto half = [&](double size) {
+    if (is_fisheye) return rad_from_deg(std::min(size, 360.0)) / 2;
     return is_parallel ? size / 2 : std::tan(rad_from_deg(std::min(size, 160.0)) / 2);
   };
   const double x = half(view.horizontal), y = half(view.vertical);
   if (!(x > 0) || !(y > 0)) return false;
-  camera.kind = is_parallel ? CameraKind::orthographic : CameraKind::perspective;
+  camera.kind = is_parallel  ? CameraKind::orthographic
+                : is_fisheye ? CameraKind::fisheye
+                             : CameraKind::perspective;
   camera.half_extent = float(y);
   camera.aspect = float(x / y);
   camera.position = Vec3(view.position - scene.origin);
