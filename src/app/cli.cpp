@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "app/command_annual.h"
 #include "app/command_report.h"
 #include "app/commands.h"
 #include "app/common_options.h"
@@ -319,6 +320,7 @@ int parse_and_run(int argc, const char* const* argv, ProcessGroup* group) {
   ViewCommand view;
   ReportCommand lighting;
   BakeCommand light;
+  AnnualCommand annual;
   RawOptions render_raw, measure_raw;
   add_render(app, render, render_raw);
   add_compare(app, compare);
@@ -330,6 +332,7 @@ int parse_and_run(int argc, const char* const* argv, ProcessGroup* group) {
   add_view(app, view);
   add_report(app, lighting);
   add_bake(app, light);
+  add_annual(app, annual);
   require_plain_numbers(app);
   set_help(app);
   const bool leads = group == nullptr || group->leads();
@@ -349,6 +352,10 @@ int parse_and_run(int argc, const char* const* argv, ProcessGroup* group) {
   if (app.got_subcommand("report")) {
     lighting.command_line = command_text(argc, argv);
     return run_report(lighting);
+  }
+  if (app.got_subcommand("annual")) {
+    annual.command_line = command_text(argc, argv);
+    return run_annual(annual);
   }
   if (app.got_subcommand("bake")) return check_and_bake(*app.get_subcommand("bake"), light);
   if (app.got_subcommand("merge")) return run_merge(merge);
