@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "annual/sensor_hours.h"
+#include "base/units.h"
 
 namespace troffer {
 
@@ -36,6 +37,24 @@ TransportRays rays_of(const AnnualOptions& options, size_t sensors) {
 struct ErrorSums {
   double squares = 0, errors = 0;
 };
+
+// Returns AnnualResult::relative_error_reflected.
+double reflected_error(std::span<const ReflectedReplicate> reflected, size_t sensors,
+                       size_t patches) {
+  double squares = 0, errors = 0;
+  std::vector<double> values(reflected.size());
+  for (size_t s = 0; s < sensors; ++s)
+    for (size_t p = 0; p < patches; ++p) {
+      double mean = 0;
+      for (size_t r = 0; r < values.size(); ++r) {
+        values[r] = double(reflected[r].of(s)[p]);
+        mean += values[r] / double(values.size());
+      }
+      squares += mean * mean;
+      errors += sqr(with_spread(mean, values).error);
+    }
+  return squares > 0 ? std::sqrt(errors / squares) : 0;
+}
 
 HoursOfSensor mean_hours(const SensorHours& hours, ErrorSums& sums) {
   HoursOfSensor out;
@@ -90,6 +109,8 @@ AnnualResult compute_annual(const PreparedScene& scene, const std::vector<Measur
     result.links = std::max(result.links, r.links);
     result.sources = std::max(result.sources, r.sources);
   }
+  result.relative_error_reflected =
+      reflected_error(reflected, hits.size(), result.skies.coarse.sky.size());
   const YearOfLight light{scene, year, result.skies, compass, reflected, options.seed};
   ErrorSums all;
   for (size_t first = 0; first < hits.size(); first += sensors_at_a_time) {

@@ -50,28 +50,28 @@ std::string requirements_table_of(const AnnualGrid& g) {
   return table.html();
 }
 
-std::string plan_figure(const AnnualReport& r, const AnnualGrid& g, SensorFigure figure) {
-  const FigureColumn& column = figure_columns()[size_t(figure)];
-  std::vector<double> values;
-  double largest = 0;
-  for (size_t s = g.first; s < g.first + g.count; ++s) {
-    values.push_back(r.result.figures.of(s, figure).value);
-    largest = std::max(largest, values.back());
-  }
-  const bool is_share = std::string(column.unit) == "%";
-  const ColourRange range{0, is_share ? 100 : std::max(largest, 1.0)};
-  return "<figure>" + grid_plan(r, g, values, column.unit, range, half_width) + "<figcaption>" +
-         html_text(column.title) + "</figcaption></figure>";
-}
-
-// Upper end of the illuminance map: 98 % of the hours lie below it, rounded up.
-double high_end(const std::vector<float>& values) {
-  std::vector<float> v = values;
+// Upper end of a scale of illuminance: 98 % of the values lie below it, rounded up.
+double high_end(std::span<const float> values) {
+  std::vector<float> v(values.begin(), values.end());
   if (v.empty()) return 1;
   const auto at = v.begin() + std::ptrdiff_t(double(v.size() - 1) * 0.98);
   std::nth_element(v.begin(), at, v.end());
   const double power = std::pow(10.0, std::floor(std::log10(std::max(double(*at), 1.0))));
   return power * std::ceil(double(*at) / power);
+}
+
+std::string plan_figure(const AnnualReport& r, const AnnualGrid& g, SensorFigure figure) {
+  const FigureColumn& column = figure_columns()[size_t(figure)];
+  std::vector<double> values;
+  std::vector<float> shown;
+  for (size_t s = g.first; s < g.first + g.count; ++s) {
+    values.push_back(r.result.figures.of(s, figure).value);
+    shown.push_back(float(values.back()));
+  }
+  const bool is_share = std::string(column.unit) == "%";
+  const ColourRange range{0, is_share ? 100 : high_end(shown)};
+  return "<figure>" + grid_plan(r, g, values, column.unit, range, half_width) + "<figcaption>" +
+         html_text(column.title) + "</figcaption></figure>";
 }
 
 std::string grid_section(const AnnualReport& r, const AnnualGrid& g) {

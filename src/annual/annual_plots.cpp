@@ -40,6 +40,11 @@ double spacing_of(const std::vector<Vec2d>& points) {
   return std::isfinite(least) ? least : 1;
 }
 
+// A value of at most four digits: "412", "9999", "14k".
+std::string plan_value(double v) {
+  return v < 9999.5 ? fmt::format("{:.0f}", v) : fmt::format("{:.0f}k", v / 1000);
+}
+
 struct PlanFrame {
   double left = 0, top = 0, scale = 1, width = 0, height = 0;
   double x(const Vec2d& p) const { return (p.x - left) * scale; }
@@ -95,10 +100,9 @@ std::string grid_plan(const AnnualReport& report, const AnnualGrid& grid,
         "fill=\"{}\"/>",
         f.x(points[i]) - side / 2, f.y(points[i]) - side / 2, side, side, hex_colour(colour));
     if (shows_values)
-      inner +=
-          svg_text(f.x(points[i]), f.y(points[i]) + 3, "middle", fmt::format("{:.0f}", values[i]),
-                   fmt::format("font-size=\"{:.1f}\" fill=\"{}\"", std::min(10.0, side / 2.6),
-                               is_dark(colour) ? "#fff" : "#000"));
+      inner += svg_text(f.x(points[i]), f.y(points[i]) + 3, "middle", plan_value(values[i]),
+                        fmt::format("font-size=\"{:.1f}\" fill=\"{}\"", std::min(10.0, side / 2.6),
+                                    is_dark(colour) ? "#fff" : "#000"));
   }
   const Vec3d north = report.compass.north;
   inner += north_arrow(axes.of(north), f.width - margin_of_compass / 2, 22);

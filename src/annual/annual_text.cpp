@@ -98,7 +98,8 @@ std::string annual_json(const AnnualReport& r) {
                          {"cells", result.cells},
                          {"links", result.links},
                          {"sources", result.sources},
-                         {"relative_error_of_hours", result.relative_error}};
+                         {"relative_error_of_hours", result.relative_error},
+                         {"relative_error_of_reflected", result.relative_error_reflected}};
   json["grids"] = Json::array();
   for (const AnnualGrid& g : r.grids) json["grids"].push_back(grid_json(g));
   return dump(json);

@@ -16,21 +16,30 @@ namespace troffer {
 namespace {
 
 constexpr size_t block = 16;  // sources solved together: floats of one cache line
-constexpr size_t cell_floats = 3 * block;
 constexpr int samples_near = 2, samples_far = 1;  // light samples of a cell per source
 constexpr size_t rays_at_a_time = 4096;
 constexpr int most_sweeps = 200;
-constexpr double most_change = 1e-4;  // of a sweep, relative: far below the noise of rows
+constexpr double most_change = 5e-4;  // of a sweep, relative: far below the noise of rows
 
 // Adds the light of all linked cells times the links' weights, channel by channel.
 TROFFER_MULTIVERSION
 void add_links(const CellLink* links, size_t n, const float* light, float* sum) {
   for (size_t k = 0; k < n; ++k) {
-    const float* l = light + size_t(links[k].cell) * cell_floats;
+    const float* l = light + size_t(links[k].cell) * 3 * block;
     const Rgb w = links[k].weight;
     for (size_t i = 0; i < block; ++i) sum[i] += w.r * l[i];
     for (size_t i = 0; i < block; ++i) sum[block + i] += w.g * l[block + i];
     for (size_t i = 0; i < block; ++i) sum[2 * block + i] += w.b * l[2 * block + i];
+  }
+}
+
+// The same for links that treat all channels alike, and luminances.
+TROFFER_MULTIVERSION
+void add_grey_links(const CellLink* links, size_t n, const float* light, float* sum) {
+  for (size_t k = 0; k < n; ++k) {
+    const float* l = light + size_t(links[k].cell) * block;
+    const float w = links[k].weight.g;
+    for (size_t i = 0; i < block; ++i) sum[i] += w * l[i];
   }
 }
 
@@ -44,7 +53,9 @@ class BlockSolver {
         first_(first),
         count_(std::min(block, sources.size() - first)),
         seed_(seed),
-        direct_(cells.cell_count() * cell_floats, 0.0f),
+        channels_(cells.is_grey() ? 1 : 3),
+        cell_floats_(channels_ * block),
+        direct_(cells.cell_count() * cell_floats_, 0.0f),
         rays_(tracer) {}
 
   void solve() {
@@ -59,12 +70,12 @@ class BlockSolver {
   }
   // Sets out[first + i] to a sensor's coefficients.
   void gather(size_t sensor, float* out) const {
-    std::array<float, cell_floats> sum{};
-    const std::span<const CellLink> links = cells_.sensors().of(sensor);
-    add_links(links.data(), links.size(), total_.data(), sum.data());
+    CellLight sum{};
+    add(cells_.sensors().of(sensor), sum.data());
     add_outside(cells_.sensors_outside().of(sensor), sum.data());
     for (size_t i = 0; i < count_; ++i)
-      out[first_ + i] = luminance({sum[i], sum[block + i], sum[2 * block + i]});
+      out[first_ + i] =
+          channels_ == 1 ? sum[i] : luminance({sum[i], sum[block + i], sum[2 * block + i]});
   }
 
  private:
@@ -74,22 +85,33 @@ class BlockSolver {
     float weight;
   };
 
+  using CellLight = std::array<float, 3 * block>;  // of one cell
+
+  void add(std::span<const CellLink> links, float* sum) const {
+    (channels_ == 1 ? add_grey_links : add_links)(links.data(), links.size(), total_.data(), sum);
+  }
+  // Adds light of source i of the block to that of a cell.
+  void add(const Rgb& light, size_t i, float* sum) const {
+    if (channels_ == 1) {
+      sum[i] += luminance(light);
+      return;
+    }
+    for (size_t c = 0; c < 3; ++c) sum[c * block + i] += light[c];
+  }
   void add_outside(std::span<const OutsideLink> ways, float* sum) const {
     for (const OutsideLink& w : ways)
       for (size_t i = 0; i < count_; ++i) {
         const float l = sources_.radiance(first_ + i, w.direction) * pi_f;
-        if (l == 0) continue;
-        for (size_t c = 0; c < 3; ++c) sum[c * block + i] += l * w.weight[c];
+        if (l > 0) add(w.weight * l, i, sum);
       }
   }
   void relax(size_t cell, double& change, double& sum) {
-    std::array<float, cell_floats> e;
-    std::copy_n(&direct_[cell * cell_floats], cell_floats, e.begin());
-    const std::span<const CellLink> links = cells_.rows().of(cell);
-    add_links(links.data(), links.size(), total_.data(), e.data());
-    float* old = &total_[cell * cell_floats];
+    CellLight e;
+    std::copy_n(&direct_[cell * cell_floats_], cell_floats_, e.begin());
+    add(cells_.rows().of(cell), e.data());
+    float* old = &total_[cell * cell_floats_];
     float moved = 0, all = 0;
-    for (size_t i = 0; i < cell_floats; ++i) {
+    for (size_t i = 0; i < cell_floats_; ++i) {
       moved += std::abs(e[i] - old[i]);
       all += e[i];
       old[i] = e[i];
@@ -101,7 +123,7 @@ class BlockSolver {
   void light_up() {
     for (size_t c = 0; c < cells_.cell_count(); ++c) {
       const std::span<const CellHit> hits = cells_.hits(c);
-      add_outside(cells_.rows_outside().of(c), &direct_[c * cell_floats]);
+      add_outside(cells_.rows_outside().of(c), &direct_[c * cell_floats_]);
       if (hits.empty()) continue;
       Random random(hash_of(seed_, uint64_t(c), uint64_t(first_), stream::annual_cell_light));
       for (size_t i = 0; i < count_; ++i) {
@@ -126,10 +148,7 @@ class BlockSolver {
     rays_.trace();
     for (size_t k = 0; k < sent_.size(); ++k) {
       const Rgb open = rays_[k] * sent_[k].weight;
-      float* d = &direct_[sent_[k].cell * cell_floats + sent_[k].source];
-      d[0] += open.r;
-      d[block] += open.g;
-      d[2 * block] += open.b;
+      if (!open.is_black()) add(open, sent_[k].source, &direct_[sent_[k].cell * cell_floats_]);
     }
     rays_.clear();
     sent_.clear();
@@ -139,6 +158,7 @@ class BlockSolver {
   const OutsideSources& sources_;
   size_t first_, count_;
   uint64_t seed_;
+  size_t channels_, cell_floats_;
   std::vector<float> direct_, total_;  // cell by cell, channel by channel
   OpenRays rays_;
   std::vector<Sent> sent_;
@@ -165,7 +185,7 @@ std::vector<ReflectedReplicate> reflected_light(const PreparedScene& scene,
     if (stop.load()) break;
     out.sources = sources.size();
     out.cells = cells.cell_count();
-    out.links = cells.rows().link_count();
+    out.links = cells.rows().all().size();
     out.coefficients.resize(sensors.size() * out.sources);
     const size_t blocks = (sources.size() + block - 1) / block;
     std::atomic<size_t> done = 0;

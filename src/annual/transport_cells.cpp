@@ -12,7 +12,7 @@ namespace {
 
 // Cell size over the median length of gather rays. Larger than for pictures (gather/cell_builder),
 // because sensors see means over many cells.
-constexpr float size_of_median = 0.1f;
+constexpr float size_of_median = 0.2f;
 constexpr size_t tasks_at_a_time = 4096;
 // Cells are followed this far; they then number a few per cent of all at most.
 constexpr int most_rounds = 12;
@@ -113,6 +113,9 @@ TransportCells::TransportCells(const PreparedScene& scene, std::span<const CellH
     rows_.add({});
     rows_outside_.add({});
   }
+  for (const LinkRows<CellLink>* rows : {&sensors_, &rows_})
+    for (const CellLink& l : rows->all())
+      is_grey_ = is_grey_ && l.weight.r == l.weight.g && l.weight.g == l.weight.b;
 }
 
 float TransportCells::coat_factor(const CellHit& hit, float cosine) const {

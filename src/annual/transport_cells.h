@@ -38,7 +38,7 @@ class LinkRows {
     begin_.push_back(links_.size());
   }
   size_t size() const { return begin_.size() - 1; }
-  size_t link_count() const { return links_.size(); }
+  std::span<const Link> all() const { return links_; }
   std::span<const Link> of(size_t row) const {
     return std::span(links_).subspan(begin_[row], begin_[row + 1] - begin_[row]);
   }
@@ -50,7 +50,7 @@ class LinkRows {
 
 struct TransportRays {
   int of_sensor = 64;                       // gather rays of a sensor
-  int of_near_cell = 64, of_far_cell = 24;  // rays of cells that sensors see, and of others
+  int of_near_cell = 48, of_far_cell = 16;  // rays of cells that sensors see, and of others
 };
 
 class TransportCells {
@@ -67,6 +67,8 @@ class TransportCells {
   const LinkRows<CellLink>& rows() const { return rows_; }
   const LinkRows<OutsideLink>& sensors_outside() const { return sensors_outside_; }
   const LinkRows<OutsideLink>& rows_outside() const { return rows_outside_; }
+  // True if no link changes colours. Luminances then suffice, whatever colour panes have.
+  bool is_grey() const { return is_grey_; }
   // Factor of direct light at a place by its coat (bsdf/bsdf.h), 1 without one.
   float coat_factor(const CellHit& hit, float cosine) const;
 
@@ -75,6 +77,7 @@ class TransportCells {
   GatherWalks walks_;
   std::unique_ptr<CellMap> cells_;
   size_t near_ = 0;
+  bool is_grey_ = true;
   LinkRows<CellLink> sensors_, rows_;
   LinkRows<OutsideLink> sensors_outside_, rows_outside_;
 };

@@ -17,7 +17,7 @@ constexpr std::array<int, 7> patches_of_rows{30, 30, 24, 24, 18, 12, 6};  // [1]
 
 Vec3d ReinhartPatch::direction(double u, double v) const {
   const double azimuth = left + (right - left) * u;
-  const double up = std::sin(low) + (std::sin(high) - std::sin(low)) * v;
+  const double up = low_sine + (high_sine - low_sine) * v;
   const double along = std::sqrt(std::max(0.0, 1 - up * up));
   return {along * std::sin(azimuth), along * std::cos(azimuth), up};
 }
@@ -26,9 +26,9 @@ ReinhartSky::ReinhartSky(int subdivision) {
   const int rows = int(patches_of_rows.size()) * subdivision;
   step_ = pi / 2 / (rows + 0.5);
   const auto add = [&](double low, double high, double left, double right) {
-    ReinhartPatch p{low, high, left, right, 0, 0};
-    p.solid_angle = (right - left) * (std::sin(high) - std::sin(low));
-    p.cosine = (right - left) / 2 * (sqr(std::sin(high)) - sqr(std::sin(low)));
+    ReinhartPatch p{low, high, left, right, std::sin(low), std::sin(high), 0, 0};
+    p.solid_angle = (right - left) * (p.high_sine - p.low_sine);
+    p.cosine = (right - left) / 2 * (sqr(p.high_sine) - sqr(p.low_sine));
     patches_.push_back(p);
   };
   for (int row = 0; row < rows; ++row) {

@@ -19,10 +19,11 @@ namespace troffer {
 
 // A patch between two altitudes and two azimuths, clockwise from north.
 struct ReinhartPatch {
-  double low = 0, high = 0;    // altitudes
-  double left = 0, right = 0;  // azimuths, left < right
-  double solid_angle = 0;      // sr
-  double cosine = 0;           // integral of the sine of the altitude over the patch
+  double low = 0, high = 0;            // altitudes
+  double left = 0, right = 0;          // azimuths, left < right
+  double low_sine = 0, high_sine = 0;  // of the altitudes
+  double solid_angle = 0;              // sr
+  double cosine = 0;                   // integral of the sine of the altitude over the patch
 
   // Returns the direction at shares (u, v) of azimuth and of the sine of altitude. Uniform shares
   // give directions uniform in solid angle.
