@@ -18,7 +18,7 @@ using namespace troffer::test;
 namespace {
 
 const StopFlag never_stop = false;
-constexpr double latitude = 48;
+constexpr double place_latitude = 48;
 
 // The world of these scenes: z is up, y is north.
 Compass compass() {
@@ -28,7 +28,7 @@ Compass compass() {
 // Every third hour of a day in four months, with sun and haze.
 WeatherYear few_hours() {
   WeatherYear year;
-  year.latitude_deg = latitude;
+  year.latitude_deg = place_latitude;
   for (const int month : {3, 6, 9, 12})
     for (double hour = 6.5; hour < 20; hour += 3) {
       WeatherStep& s = year.steps.emplace_back();
@@ -36,7 +36,7 @@ WeatherYear few_hours() {
       s.day = 21;
       s.hour = hour;
       s.hour_of_year = (month * 30 - 9) * 24 + hour;
-      s.sun = sun_position(latitude, 0, julian_day(2015, month, 21, hour));
+      s.sun = sun_position(place_latitude, 0, julian_day(2015, month, 21, hour));
       s.direct_normal = month == 9 ? 0 : 500;
       s.diffuse_horizontal = 150;
     }

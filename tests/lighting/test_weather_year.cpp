@@ -134,7 +134,7 @@ TEST_CASE("files that are no weather are refused with their line") {
     try {
       read_weather_year(file.path());
     } catch (const InputError& e) {
-      return e.line;
+      return e.line();
     }
     return -1;
   };
