@@ -2,8 +2,8 @@
 // fills it in; annual_text.h, annual_page.h and honeybee_folder.h write it.
 #pragma once
 
+#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "annual/annual.h"

@@ -16,7 +16,7 @@ namespace troffer {
 namespace {
 
 constexpr size_t block = 16;  // sources solved together: floats of one cache line
-constexpr int samples_near = 2, samples_far = 1;  // light samples of a cell per source
+constexpr int samples_near = 4, samples_far = 2;  // light samples of a cell per source
 constexpr size_t rays_at_a_time = 4096;
 constexpr int most_sweeps = 200;
 constexpr double most_change = 5e-4;  // of a sweep, relative: far below the noise of rows

@@ -10,9 +10,9 @@ namespace troffer {
 
 namespace {
 
-// Distances of the grid's positions: half an hour, and about the width of two of Tregenza's
-// patches over the year. Convention; the shift of replicates shows what it costs.
-constexpr double step_of_hour_angle = rad_from_deg(7.5), step_of_declination = rad_from_deg(6.7);
+// Distances of the grid's positions, half of a Tregenza patch: convention. Estimated errors
+// include what interpolation costs, by the shifts of replicates.
+constexpr double step_of_hour_angle = rad_from_deg(6), step_of_declination = rad_from_deg(6);
 // Least sine of altitude of a position. The grid reaches below the horizon, where hours near
 // sunset interpolate.
 constexpr double least_sine = 0.01;

@@ -4,6 +4,7 @@
 
 #include "base/random.h"
 #include "base/streams.h"
+#include "bsdf/bsdf.h"
 #include "gather/cell_rays.h"
 
 namespace troffer {

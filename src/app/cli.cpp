@@ -353,10 +353,7 @@ int parse_and_run(int argc, const char* const* argv, ProcessGroup* group) {
     lighting.command_line = command_text(argc, argv);
     return run_report(lighting);
   }
-  if (app.got_subcommand("annual")) {
-    annual.command_line = command_text(argc, argv);
-    return run_annual(annual);
-  }
+  if (app.got_subcommand("annual")) return run_annual(annual, command_text(argc, argv));
   if (app.got_subcommand("bake")) return check_and_bake(*app.get_subcommand("bake"), light);
   if (app.got_subcommand("merge")) return run_merge(merge);
   return run_info(info);
@@ -393,13 +390,9 @@ int run(int argc, const char* const* argv, ProcessGroup* group) {
     return status;
   } catch (const UsageError& e) {
     return report(e.what(), exit_usage, group);
-  } catch (const InputError& e) {
-    return report(e.what(), exit_bad_input, group);
-  } catch (const EnvironmentError& e) {
-    return report(e.what(), exit_bad_input, group);
   } catch (const std::bad_alloc&) {
     return report("out of memory", exit_bad_input, group);
-  } catch (const std::exception& e) {  // threads, the file system, text formatting
+  } catch (const std::exception& e) {  // InputError, EnvironmentError, threads, text formatting
     return report(e.what(), exit_bad_input, group);
   }
 }

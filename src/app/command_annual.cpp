@@ -135,7 +135,7 @@ void add_annual(CLI::App& app, AnnualCommand& c) {
       ->check(number_between(1, 100000))
       ->capture_default_str();
   s->add_option("--subdivision", c.options.subdivision,
-                "Fineness of the sky for light straight from it: N² times 145 patches")
+                "Fineness of the sky for light straight from it: 144 N² + 1 patches")
       ->check(whole_number_between(1, 8))
       ->capture_default_str();
   s->add_option("--gather-rays", c.options.rays_of_sensor,
@@ -147,7 +147,7 @@ void add_annual(CLI::App& app, AnnualCommand& c) {
   s->add_flag("--quiet", c.is_quiet, "No progress bar, notes or warnings");
 }
 
-int run_annual(const AnnualCommand& c) {
+int run_annual(const AnnualCommand& c, const std::string& command_line) {
   const Clock::time_point start = Clock::now();
   OutputGuard guard;
   guard_outputs(c, guard);
@@ -193,7 +193,7 @@ int run_annual(const AnnualCommand& c) {
                             c.scene.file,
                             c.weather,
                             TROFFER_VERSION,
-                            c.command_line,
+                            command_line,
                             notes,
                             c.options.occupancy,
                             c.options.figures.da_lx,

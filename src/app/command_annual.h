@@ -19,9 +19,9 @@ struct AnnualCommand {
   double north_deg = 0;
   std::string title;
   bool is_quiet = false;
-  std::string command_line;  // as typed
 };
 void add_annual(CLI::App& app, AnnualCommand& command);  // adds its options
-int run_annual(const AnnualCommand& command);
+// command_line: as typed, for the outputs.
+int run_annual(const AnnualCommand& command, const std::string& command_line);
 
 }  // namespace troffer

@@ -22,6 +22,13 @@ Vec3d ReinhartPatch::direction(double u, double v) const {
   return {along * std::sin(azimuth), along * std::cos(azimuth), up};
 }
 
+Vec3d ReinhartPatch::centre() const {
+  if (right - left > pi) return {0, 0, 1};
+  const double azimuth = (left + right) / 2, altitude = (low + high) / 2;
+  return {std::cos(altitude) * std::sin(azimuth), std::cos(altitude) * std::cos(azimuth),
+          std::sin(altitude)};
+}
+
 ReinhartSky::ReinhartSky(int subdivision) {
   const int rows = int(patches_of_rows.size()) * subdivision;
   step_ = pi / 2 / (rows + 0.5);
@@ -59,7 +66,8 @@ void patch_luminances(const ReinhartSky& sky, const SkyShape& shape, const Vec3d
     float sum = 0;
     for (int y = 0; y < samples; ++y)
       for (int x = 0; x < samples; ++x) {
-        const Vec3d w = p.direction((x + 0.5) / samples, (y + 0.5) / samples);
+        const Vec3d w =
+            samples == 1 ? p.centre() : p.direction((x + 0.5) / samples, (y + 0.5) / samples);
         sum += relative_luminance(shape, float(w.z), float(dot(w, to_sun)));
       }
     out[i] = sum / float(cells);

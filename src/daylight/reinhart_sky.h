@@ -28,6 +28,8 @@ struct ReinhartPatch {
   // Returns the direction at shares (u, v) of azimuth and of the sine of altitude. Uniform shares
   // give directions uniform in solid angle.
   Vec3d direction(double u, double v) const;
+  // Returns the direction of the middle altitude and azimuth, or of the zenith.
+  Vec3d centre() const;
 };
 
 class ReinhartSky {
@@ -51,7 +53,8 @@ class ReinhartSky {
   std::vector<ReinhartPatch> patches_;
 };
 
-// Sets out[i] to the mean luminance of patch i, cd/m², from samples² points. The patches together
+// Sets out[i] to the mean luminance of patch i, cd/m², from samples² points; one sample is taken at
+// the centre, as gendaymtx does [3]. The patches together
 // give a horizontal plane the illuminance diffuse_lx; a black sky stays black.
 void patch_luminances(const ReinhartSky& sky, const SkyShape& shape, const Vec3d& to_sun,
                       double diffuse_lx, int samples, std::span<float> out);
