@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "app/command_annual.h"
 #include "app/command_report.h"
 #include "app/commands.h"
 #include "app/common_options.h"
@@ -312,6 +313,7 @@ int parse_and_run(int argc, const char* const* argv, ProcessGroup* group) {
   ReportCommand lighting;
   BakeCommand light;
   GlareCommand glare;
+  AnnualCommand annual;
   RawOptions render_raw, measure_raw;
   add_render(app, render, render_raw);
   add_compare(app, compare);
@@ -324,6 +326,7 @@ int parse_and_run(int argc, const char* const* argv, ProcessGroup* group) {
   add_report(app, lighting);
   add_bake(app, light);
   add_glare(app, glare);
+  add_annual(app, annual);
   require_plain_numbers(app);
   set_help(app);
   const bool leads = group == nullptr || group->leads();
@@ -344,6 +347,7 @@ int parse_and_run(int argc, const char* const* argv, ProcessGroup* group) {
     lighting.command_line = command_text(argc, argv);
     return run_report(lighting);
   }
+  if (app.got_subcommand("annual")) return run_annual(annual, command_text(argc, argv));
   if (app.got_subcommand("bake")) return check_and_bake(*app.get_subcommand("bake"), light);
   if (app.got_subcommand("glare")) return run_glare(std::move(glare));
   if (app.got_subcommand("merge")) return run_merge(merge);
@@ -381,13 +385,9 @@ int run(int argc, const char* const* argv, ProcessGroup* group) {
     return status;
   } catch (const UsageError& e) {
     return report(e.what(), exit_usage, group);
-  } catch (const InputError& e) {
-    return report(e.what(), exit_bad_input, group);
-  } catch (const EnvironmentError& e) {
-    return report(e.what(), exit_bad_input, group);
   } catch (const std::bad_alloc&) {
     return report("out of memory", exit_bad_input, group);
-  } catch (const std::exception& e) {  // threads, the file system, text formatting
+  } catch (const std::exception& e) {  // InputError, EnvironmentError, threads, text formatting
     return report(e.what(), exit_bad_input, group);
   }
 }

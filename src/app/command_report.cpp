@@ -14,6 +14,7 @@
 #include "app/printable.h"
 #include "app/process.h"
 #include "app/progress.h"
+#include "app/report_folder.h"
 #include "app/signals.h"
 #include "app/unfinished.h"
 #include "base/error.h"
@@ -40,31 +41,6 @@ namespace troffer {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The folder of the report's files. It is created if missing, and removed again if nothing is
-// written.
-class ReportFolder {
- public:
-  explicit ReportFolder(std::string path) : path_(std::move(path)) {
-    std::error_code error;
-    is_new_ = !fs::exists(path_, error);
-    fs::create_directories(path_, error);
-    if (error || !fs::is_directory(path_, error))
-      throw EnvironmentError("cannot make the folder " + path_ +
-                             (error ? ": " + error.message() : ""));
-  }
-  ~ReportFolder() {
-    std::error_code ignored;  // fails for a folder with files, which stays
-    if (is_new_) fs::remove(path_, ignored);
-  }
-  ReportFolder(const ReportFolder&) = delete;
-  ReportFolder& operator=(const ReportFolder&) = delete;
-  std::string file(const std::string& name) const { return (fs::path(path_) / name).string(); }
-
- private:
-  std::string path_;
-  bool is_new_ = false;
-};
 
 // Returns hashes of all files that were read, the scene's first.
 std::vector<InputHash> hashes_of(const ReportCommand& c, const FilesRead& read) {

@@ -90,7 +90,7 @@ struct GlareCommand {
   bool leaves_low_light = false;
   std::string output;  // picture, or empty
   bool is_json = false;
-  std::string method = "certified";
+  std::string method = "path";
   double error = 0.02;
   std::vector<std::string> lights;
   DaylightOptions daylight;

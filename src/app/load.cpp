@@ -114,7 +114,9 @@ Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& ligh
   if (up.is_needed && !up.decision.doubt.empty()) scene.warnings.add(up.decision.doubt);
   if (bounds(scene).is_empty() && scene.lights.empty())
     throw InputError(choice.file, 0, 0, "is empty: it has neither surfaces nor lights");
-  if (!shines(scene)) scene.warnings.add("there is no light: nothing will be seen");
+  // Without `daylight`, the command itself brings light.
+  if (!shines(scene) && daylight != nullptr)
+    scene.warnings.add("there is no light: nothing will be seen");
   if (!lights.empty()) scene = with_only_lights(std::move(scene), lights);
   if (daylight != nullptr) check_light(scene, *daylight, lights);
   scene = with_joined_lights(std::move(scene));

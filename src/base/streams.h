@@ -41,6 +41,16 @@ inline constexpr uint64_t gather_records = 0x7669'6577;
 inline constexpr uint64_t thinning_sight = 0x636c'6f73;
 inline constexpr uint64_t thinning_rays = 0x636c'6f74;
 
+// Annual daylight; derived from the seed.
+inline constexpr uint64_t annual_replicates = 0x616e'6e75;
+inline constexpr uint64_t annual_gather = 0x616e'6e67;
+inline constexpr uint64_t annual_rows = 0x616e'6e72;
+inline constexpr uint64_t annual_cell_light = 0x616e'6e63;
+inline constexpr uint64_t annual_sun_grid = 0x616e'6e6e;
+inline constexpr uint64_t annual_direct_sky = 0x616e'6e64;
+inline constexpr uint64_t annual_direct_ground = 0x616e'6e74;
+inline constexpr uint64_t annual_direct_sun = 0x616e'6e73;
+
 // Parts of a sample; derived from the stream of its pixel or point.
 inline constexpr uint64_t far_side = 0x6661'7220'7369'6465;
 inline constexpr uint64_t mirror_image_of_hit = 0x696d'6167;

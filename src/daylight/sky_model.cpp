@@ -122,6 +122,26 @@ double at(const Row& x, double z, double delta) {
   return x[0] + x[1] * z + delta * (x[2] + x[3] * z);
 }
 
+// Midpoint rule in the squared sine of the zenith angle, in which the cosine weight is uniform, and
+// in azimuth. By symmetry half of the azimuths suffice.
+double integral_by_points(const SkyShape& shape, double sun_zenith_rad, int n) {
+  const double sun_up = std::cos(sun_zenith_rad), sun_along = std::sin(sun_zenith_rad);
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    const double sine2 = (i + 0.5) / n, sine = std::sqrt(sine2), up = std::sqrt(1 - sine2);
+    for (int k = 0; k < n; ++k) {
+      const double along = sine * std::cos(pi * (k + 0.5) / n);
+      sum += relative_luminance(shape, up, up * sun_up + along * sun_along);
+    }
+  }
+  return pi * sum / (double(n) * n);
+}
+
+// True if the formula gives light anywhere. A few points suffice, and skies of a whole year ask.
+bool gives_light(const SkyShape& shape, double sun_zenith_rad) {
+  return integral_by_points(shape, sun_zenith_rad, 24) > 0;
+}
+
 }  // namespace
 
 SkyShape cie_sky(int type) {
@@ -138,20 +158,8 @@ SkyShape cie_sky(int type) {
   return s;
 }
 
-// Midpoint rule in the squared sine of the zenith angle, in which the cosine weight is uniform, and
-// in azimuth. By symmetry half of the azimuths suffice.
 double horizontal_integral(const SkyShape& shape, double sun_zenith_rad) {
-  constexpr int n = 400;
-  const double sun_up = std::cos(sun_zenith_rad), sun_along = std::sin(sun_zenith_rad);
-  double sum = 0;
-  for (int i = 0; i < n; ++i) {
-    const double sine2 = (i + 0.5) / n, sine = std::sqrt(sine2), up = std::sqrt(1 - sine2);
-    for (int k = 0; k < n; ++k) {
-      const double along = sine * std::cos(pi * (k + 0.5) / n);
-      sum += relative_luminance(shape, up, up * sun_up + along * sun_along);
-    }
-  }
-  return pi * sum / (double(n) * n);
+  return integral_by_points(shape, sun_zenith_rad, 400);
 }
 
 PerezSky perez_sky(double direct_normal, double diffuse_horizontal, double sun_zenith_rad,
@@ -182,8 +190,7 @@ PerezSky perez_sky(double direct_normal, double diffuse_horizontal, double sun_z
     sky.shape.c = float(at(row[2], z, delta));
     sky.shape.d = float(at(row[3], z, delta));
   }
-  if (!(horizontal_integral(sky.shape, z) > 0))
-    sky.shape = uniform_sky();  // outside the measured range
+  if (!gives_light(sky.shape, z)) sky.shape = uniform_sky();  // outside the measured range
   const Row &f = diffuse_efficacy[bin], &r = direct_efficacy[bin];
   sky.diffuse_lx = diffuse_horizontal *
                    (f[0] + f[1] * water_cm + f[2] * std::cos(z) + f[3] * std::log(brightness));

@@ -23,6 +23,7 @@ struct RayWorker {
 struct Chunk {
   size_t first = 0, last = 0;  // range of tasks
   std::vector<CellSeen> seen;
+  std::vector<CellEscape> escapes;
 };
 
 std::vector<Chunk> chunks_of(std::span<const CellTask> tasks) {
@@ -72,6 +73,10 @@ void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const C
   for (int bounce = 0; !g.walks.empty(); ++bounce) {
     walks.follow(w.tasks.size(), Coherence::none, g, w.counters);
     w.close.clear();
+    for (const GatherEscape& e : g.escapes) {
+      const uint32_t task = w.tasks[e.index];
+      chunk.escapes.push_back({task, e.direction, e.throughput * w.scales[task - chunk.first]});
+    }
     for (const GatherArrival& a : g.arrivals) {
       const uint32_t cell = map != nullptr ? map->find(a.hit, a.distance) : no_cell;
       const bool is_narrow = cell != no_cell
@@ -98,6 +103,8 @@ void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const C
   // Hits by way of mirrors or sub-cell features are out of order.
   std::stable_sort(chunk.seen.begin(), chunk.seen.end(),
                    [](const CellSeen& a, const CellSeen& b) { return a.task < b.task; });
+  std::stable_sort(chunk.escapes.begin(), chunk.escapes.end(),
+                   [](const CellEscape& a, const CellEscape& b) { return a.task < b.task; });
 }
 
 }  // namespace
@@ -106,9 +113,11 @@ void trace_cell_rays(const GatherWalks& walks, const CellMap* map, std::span<con
                      int threads, ProcessGroup* group, const StopFlag& stop, CellsSeen& out,
                      Counters& counters) {
   out.seen.clear();
+  out.escapes.clear();
   out.emission.assign(tasks.size(), Rgb{0});
   std::vector<Chunk> chunks = chunks_of(tasks);
   std::vector<RayWorker> workers(size_t(thread_count(threads)));
+  for (RayWorker& w : workers) w.gather.keeps_escapes = out.keeps_escapes;
   SharedWork work;
   work.items = chunks.size();
   work.threads = threads;
@@ -121,15 +130,20 @@ void trace_cell_rays(const GatherWalks& walks, const CellMap* map, std::span<con
   };
   work.save = [&](size_t c, SharedWork::Bytes& bytes) {
     append_all(bytes, std::span<const CellSeen>(chunks[c].seen));
+    append_all(bytes, std::span<const CellEscape>(chunks[c].escapes));
     for (const Rgb& e : emission_of(chunks[c])) append(bytes, e);
   };
   work.load = [&](size_t c, ByteReader in) {
     chunks[c].seen = next_all<CellSeen>(in);
+    chunks[c].escapes = next_all<CellEscape>(in);
     for (Rgb& e : emission_of(chunks[c])) e = in.next<Rgb>();
   };
   share(group, work, stop);
   for (const RayWorker& w : workers) counters += w.counters;
-  for (const Chunk& c : chunks) out.seen.insert(out.seen.end(), c.seen.begin(), c.seen.end());
+  for (const Chunk& c : chunks) {
+    out.seen.insert(out.seen.end(), c.seen.begin(), c.seen.end());
+    out.escapes.insert(out.escapes.end(), c.escapes.begin(), c.escapes.end());
+  }
 }
 
 }  // namespace troffer

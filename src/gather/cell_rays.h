@@ -30,8 +30,17 @@ struct CellSeen {
   CellHit hit;
 };
 
+// A ray of a task that left the scene by way of mirrors, glass or gloss (GatherEscape).
+struct CellEscape {
+  uint32_t task = 0;
+  Vec3 direction;
+  Rgb weight;
+};
+
 struct CellsSeen {
-  std::vector<CellSeen> seen;  // ordered by task
+  bool keeps_escapes = false;       // set by the caller
+  std::vector<CellEscape> escapes;  // ordered by task; empty unless kept
+  std::vector<CellSeen> seen;       // ordered by task
   // Per task: irradiance times rays, from sources that rays ran into, or that were sampled at
   // sub-cell features.
   std::vector<Rgb> emission;

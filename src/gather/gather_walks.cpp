@@ -114,6 +114,7 @@ GatherWalks::GatherWalks(const PreparedScene& scene, std::shared_ptr<const Mirro
 void GatherWalks::follow(size_t rays, Coherence coherence, GatherScratch& s,
                          Counters& counters) const {
   s.arrivals.clear();
+  s.escapes.clear();
   s.light.direct.assign(rays, Rgb{0});
   s.light.indirect.assign(rays, Rgb{0});
   s.light.shadow_rays.assign(rays, 0);
@@ -173,6 +174,8 @@ void GatherWalks::arrive_all(GatherScratch& s) const {
 }
 
 void GatherWalks::leave_scene(const Walk& walk, GatherScratch& s) const {
+  if (s.keeps_escapes && walk.last_place != note_from_matte)
+    s.escapes.push_back({walk.index, walk.ray.direction, walk.throughput});
   for (const uint32_t p : scene_.primitives.at_infinity())
     if (counts(walk, scene_.primitives[p].light))
       see(walk,

@@ -40,14 +40,25 @@ struct GatherArrival {
   float length = 0;        // metres from where the ray set out
 };
 
+// A ray that has left the scene by way of mirrors, glass or gloss, and in which direction.
+struct GatherEscape {
+  uint32_t index = 0;  // Walk::index
+  Vec3 direction;
+  Rgb throughput;
+};
+
 struct GatherScratch {
   // True for rays of a view, which end where gloss would spread them.
   bool is_view = false;
   // True for rays of cells. Rows are bounded and would cut off heavy rays, so roulette at gloss
   // ends fewer of them and adds less weight.
   bool is_of_rows = false;
+  // True for callers that bring light from outside themselves. Straight ways out, which at most
+  // pass panes, do not count as escapes: they belong to direct light.
+  bool keeps_escapes = false;
   std::vector<Walk> walks, next;
   std::vector<GatherArrival> arrivals;  // result: arrivals
+  std::vector<GatherEscape> escapes;    // result: escapes, if kept
   RadianceBatch light;                  // result: radiance from sources, direct + indirect
   std::vector<float> black;  // result: metres that each ray went to a black surface; 0: none
   WalkScratch trace;

@@ -183,7 +183,7 @@ TEST_CASE("methods are found by name and report their parts") {
   CHECK(Method::find("fixed") == Method::fixed);
   CHECK(Method::find("path") == Method::path);
   CHECK(!Method::find(""));
-  CHECK(Method::names() == "certified, kj92, fixed or path");
+  CHECK(Method::names() == "certified, kj92, fixed, path or cached-path");
   CHECK(Indirect::find("auto") == Indirect::automatic);
   CHECK(Indirect::find("none") == Indirect::none);
   CHECK(Indirect::find("radiosity") == Indirect::radiosity);

@@ -8,6 +8,7 @@
 #include "base/frame.h"
 #include "base/random.h"
 #include "base/warp.h"
+#include "methods/path.h"
 #include "methods/path_forecast.h"
 #include "render/pictures.h"
 #include "support/surfaceless_lights.h"
@@ -155,7 +156,7 @@ TEST_CASE("--indirect auto: cells are abandoned if they cost more than paths") {
   o.height = 120;
   o.error = 0.02;
   // Making cells begins,
-  REQUIRE(forecast_paths(scene, view, 0.75 * o.error, 1 << 14, o.seed, counters).rays_for_cells >
+  REQUIRE(forecast_paths(PathIntegrator(scene, {}), view, 0.75 * o.error, 1 << 14, o.seed, counters).rays_for_cells >
           0);
   // but is given up.
   CHECK(render_now(scene, above, o).statistics.is_by_paths);
@@ -170,7 +171,7 @@ TEST_CASE("forecast of paths: the number of rays follows from the asked error an
                              return camera.ray({x, y}, {0.5f, 0.5f});
                            }};
     Counters counters;
-    return forecast_paths(scene, view, error, most, 0, counters);
+    return forecast_paths(PathIntegrator(scene, {}), view, error, most, 0, counters);
   };
   const PathForecast coarse = forecast(160, 0.02, 1 << 30), fine = forecast(160, 0.01, 1 << 30);
   CHECK(coarse.evenness > 0.02);  // a path's random numbers are stratified within the pixel

@@ -1,0 +1,16 @@
+// Writes the results of a year as JSON and CSV (docs/reference/annual.md).
+#pragma once
+
+#include <string>
+
+#include "annual/annual_report.h"
+
+namespace troffer {
+
+// annual.json: place, settings, and all figures and requirements of grids with their errors.
+std::string annual_json(const AnnualReport& report);
+
+// metrics.csv: one row per sensor, each figure followed by its standard error.
+std::string annual_metrics(const AnnualReport& report);
+
+}  // namespace troffer

@@ -1,0 +1,64 @@
+#include "annual/outside_sources.h"
+
+#include <cmath>
+
+#include "base/frame.h"
+#include "base/units.h"
+#include "base/warp.h"
+#include "daylight/sky_model.h"
+
+namespace troffer {
+
+namespace {
+
+// Radius of the disc that stands for the sun behind mirrors, glass and gloss. Convention: a
+// Tregenza patch is about as wide.
+constexpr double blurred_radius = rad_from_deg(5);
+
+}  // namespace
+
+OutsideSources::OutsideSources(const Compass& compass, std::span<const Vec3d> suns)
+    : compass_(compass) {
+  for (const Vec3d& s : suns) suns_.push_back(world(s));
+}
+
+void OutsideSources::draw(size_t source, int count, Random& random,
+                          std::vector<OutsideSample>& out) const {
+  if (source < ground()) {
+    const ReinhartPatch& p = sky_.patches()[source];
+    for (int i = 0; i < count; ++i) {
+      const double u = (i + random.next_double()) / count;
+      out.push_back({world(p.direction(u, random.next_double())), float(p.solid_angle / count)});
+    }
+  } else if (source == ground()) {
+    for (const ReinhartPatch& p : sky_.patches()) {
+      const double u = random.next_double();
+      Vec3d d = p.direction(u, random.next_double());
+      d.z = -d.z;
+      out.push_back({world(d), float(p.solid_angle)});
+    }
+  } else {
+    for (int i = 0; i < count; ++i)
+      out.push_back(
+          {within_sun(suns_[source - first_sun()], random.next_vec2()), 1.0f / float(count)});
+  }
+}
+
+float OutsideSources::radiance(size_t source, const Vec3& direction) const {
+  const Vec3d w(direction);
+  const Vec3d d{dot(w, compass_.east), dot(w, compass_.north), dot(w, compass_.up)};
+  if (source < ground()) return d.z > 0 && sky_.at(d) == source ? 1.0f : 0.0f;
+  if (source == ground()) return d.z <= 0 ? 1.0f : 0.0f;
+  const double cosine = dot(w, Vec3d(suns_[source - first_sun()]));
+  if (cosine < std::cos(blurred_radius)) return 0;
+  return float(1 / (pi * sqr(std::sin(blurred_radius))));
+}
+
+Vec3 within_sun(const Vec3& to_sun, const Vec2& number) {
+  const float radius = float(std::sin(rad_from_deg(sun_angular_radius_deg)));
+  const Vec2 disc = disk_from_square(number) * radius;
+  const float up = std::sqrt(1 - dot(disc, disc));
+  return Frame(to_sun).to_world({disc.x, disc.y, up});
+}
+
+}  // namespace troffer

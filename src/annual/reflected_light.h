@@ -1,0 +1,52 @@
+// Reflected daylight at sensors: illuminance per unit of each source outside (outside_sources.h)
+// by way of at least one surface. All sources are right-hand sides of one balance of light on
+// cells, E = D + W E, which is solved for blocks of sources.
+//
+// The calculation runs as a few independent replicates. Their mean is the result, and their spread
+// is its error, by whatever way random numbers enter.
+//
+// References: [1] Tregenza & Waters, "Daylight coefficients", Lighting Research and Technology
+//   15(2), 1983.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "annual/outside_sources.h"
+#include "annual/sun_grid.h"
+#include "annual/transport_cells.h"
+#include "render/progress.h"
+
+namespace troffer {
+
+constexpr int replicate_count = 8;
+
+// Coefficients of one replicate: lx per unit of a source, sensor by sensor.
+struct ReflectedReplicate {
+  SunGrid suns;
+  size_t sources = 0;
+  size_t cells = 0, links = 0;  // size of its matrix
+  std::vector<float> coefficients;
+
+  std::span<const float> of(size_t sensor) const {
+    return std::span(coefficients).subspan(sensor * sources, sources);
+  }
+};
+
+struct ReflectedOptions {
+  TransportRays rays;
+  uint64_t seed = 0;
+  int threads = 0;
+};
+
+// Computes all replicates. Returns fewer once `stop` is set. Memory besides the results: per thread
+// 400 bytes per cell, and 16 bytes per ray of one replicate.
+std::vector<ReflectedReplicate> reflected_light(const PreparedScene& scene,
+                                                std::span<const CellHit> sensors,
+                                                const WeatherYear& year, const Compass& compass,
+                                                const ReflectedOptions& options,
+                                                const ProgressCallback& progress,
+                                                const StopFlag& stop);
+
+}  // namespace troffer

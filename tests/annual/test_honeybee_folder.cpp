@@ -1,0 +1,90 @@
+// Files in Honeybee's layout: headers of arrays, their contents, and no files without finish().
+#include "annual/honeybee_folder.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+using namespace troffer;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string contents(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// A folder that lives as long as the object.
+class TestFolder {
+ public:
+  TestFolder() : path_(fs::temp_directory_path() / fmt::format("troffer-honeybee-{}", getpid())) {
+    fs::remove_all(path_);
+  }
+  ~TestFolder() { fs::remove_all(path_); }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+HoursOfSensor hours_of(float first) {
+  return {{first, first + 1, first + 2}, {0, 1, first}, {0, 0, 0}};
+}
+
+}  // namespace
+
+// NumPy's format 1.0: magic, version, length of the header, then text that ends in a line feed; the
+// whole takes a multiple of 64 bytes.
+TEST_CASE("an array's header is as NumPy defines it") {
+  const std::string h = npy_header(12, 3456);
+  CHECK(h.substr(0, 8) == std::string("\x93NUMPY\x01\x00", 8));
+  CHECK(h.size() % 64 == 0);
+  CHECK(size_t(uint8_t(h[8])) + 256 * size_t(uint8_t(h[9])) == h.size() - 10);
+  CHECK(h.back() == '\n');
+  CHECK(h.find("{'descr': '<f4', 'fortran_order': False, 'shape': (12, 3456), }") == 10);
+}
+
+TEST_CASE("arrays hold one row per sensor, and grids that need other names get them") {
+  const TestFolder folder;
+  WeatherYear year;
+  for (int h = 0; h < 4; ++h) {
+    WeatherStep& s = year.steps.emplace_back();
+    s.hour_of_year = h + 0.5;
+  }
+  YearSkies skies{{1, 2, 3}, {ReinhartSky(1), {}}, {ReinhartSky(1), {}}, {}, {}, {}};
+  {
+    HoneybeeFolder files(folder.path().string(), {{"a/b", 2}, {"a b", 1}}, 3);
+    for (const float first : {10.0f, 20.0f, 30.0f}) files.add(hours_of(first));
+    files.finish(year, skies);
+  }
+  const fs::path arrays = folder.path() / "__static_apertures__" / "default";
+  const std::string total = contents(arrays / "total" / "a_b.npy");
+  REQUIRE(total.size() == npy_header(2, 3).size() + 6 * sizeof(float));
+  float last = 0;
+  std::memcpy(&last, total.data() + total.size() - sizeof last, sizeof last);
+  CHECK(last == 22);
+  const std::string direct = contents(arrays / "direct" / "a_b_2.npy");
+  std::memcpy(&last, direct.data() + direct.size() - sizeof last, sizeof last);
+  CHECK(last == 30);
+  CHECK(contents(folder.path() / "sun-up-hours.txt") == "1.5\n2.5\n3.5\n");
+  CHECK(contents(folder.path() / "grids_info.json").find("\"full_id\": \"a_b_2\"") !=
+        std::string::npos);
+}
+
+TEST_CASE("an unfinished folder leaves nothing") {
+  const TestFolder folder;
+  {
+    HoneybeeFolder files(folder.path().string(), {{"room", 2}}, 3);
+    files.add(hours_of(1));
+  }
+  CHECK(!fs::exists(folder.path()));
+}

@@ -1,0 +1,112 @@
+// Annual figures of short years whose values can be counted by hand.
+#include "annual/year_figures.h"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <vector>
+
+using namespace troffer;
+
+namespace {
+
+double at(const SensorFigures& f, SensorFigure which) {
+  return f[size_t(which)];
+}
+
+// Ten hours with the sun up, of which eight are occupied, and two occupied hours of night.
+YearTimes short_year() {
+  YearTimes t;
+  t.is_occupied = {1, 1, 1, 1, 1, 1, 1, 1, 0, 0};
+  t.occupied = 10;
+  t.is_daylight = {0, 1, 1, 1, 1, 1, 1, 0, 0, 0};
+  t.daylight = 6;
+  t.mornings = {2, 4};
+  t.afternoons = {6};
+  return t;
+}
+
+const std::vector<float> total{50, 100, 150, 299, 300, 3000, 3001, 6000, 9000, 10};
+const std::vector<float> sun{0, 0, 0, 0, 0, 1000, 1001, 5000, 8000, 0};
+
+}  // namespace
+
+// Definitions as honeybee-radiance-postprocess has them (metrics.py): da counts from the threshold
+// on, udi from 100 to 3000 lx inclusive, and hours of night below 100 lx.
+TEST_CASE("figures of a sensor count hours") {
+  const SensorFigures f = figures_of(total, sun, short_year(), 1, {300});
+  CHECK(at(f, SensorFigure::da) == doctest::Approx(40));  // 300, 3000, 3001, 6000
+  const double partial = (50 + 100 + 150 + 299) / 300.0;
+  CHECK(at(f, SensorFigure::cda) == doctest::Approx(10 * (4 + partial)));
+  CHECK(at(f, SensorFigure::udi_fell_short) == doctest::Approx(30));  // 50 lx and the night
+  CHECK(at(f, SensorFigure::udi_supplementary) == doctest::Approx(30));
+  CHECK(at(f, SensorFigure::udi_autonomous) == doctest::Approx(20));
+  CHECK(at(f, SensorFigure::udi_exceeded) == doctest::Approx(20));
+  CHECK(at(f, SensorFigure::mean_lx) ==
+        doctest::Approx((50 + 100 + 150 + 299 + 300 + 3000 + 3001 + 6000) / 10.0));
+  CHECK(at(f, SensorFigure::exposure_klxh) == doctest::Approx(21.910));
+  CHECK(at(f, SensorFigure::sun_hours) == 2);  // above 1000 lx, occupied
+  CHECK(at(f, SensorFigure::daylight_100) == doctest::Approx(100));
+  CHECK(at(f, SensorFigure::daylight_300) == doctest::Approx(50));
+  CHECK(at(f, SensorFigure::daylight_750) == doctest::Approx(100 * 2 / 6.0));
+  CHECK(at(f, SensorFigure::morning_lx) == doctest::Approx(225));
+  CHECK(at(f, SensorFigure::afternoon_lx) == doctest::Approx(3001));
+}
+
+TEST_CASE("quarters of an hour count as such") {
+  const SensorFigures f = figures_of(total, sun, short_year(), 4, {300});
+  CHECK(at(f, SensorFigure::sun_hours) == doctest::Approx(0.5));
+  CHECK(at(f, SensorFigure::exposure_klxh) == doctest::Approx(21.910 / 4));
+  CHECK(at(f, SensorFigure::da) == doctest::Approx(40));
+}
+
+TEST_CASE("the error is that of the mean of replicates") {
+  const std::array values{1.0, 2.0, 3.0, 4.0};  // standard deviation √(5/3)
+  const YearFigure f = with_spread(2.4, values);
+  CHECK(f.value == 2.4);
+  CHECK(f.error == doctest::Approx(std::sqrt(5.0 / 3) / 2));
+}
+
+TEST_CASE("figures of a grid are shares of its sensors") {
+  FigureTable table(4, 2);
+  for (size_t s = 0; s < 4; ++s)
+    for (size_t set = 0; set < 3; ++set) {
+      SensorFigures& f = table.at(s, set);
+      f[size_t(SensorFigure::da)] = s == 0 ? 49.9 : 50;
+      f[size_t(SensorFigure::sun_hours)] = s == 3 ? 250 : 249;
+      f[size_t(SensorFigure::daylight_300)] = s < 2 ? 60 : 40;
+      f[size_t(SensorFigure::morning_lx)] = 500;
+      f[size_t(SensorFigure::afternoon_lx)] = s == 1 ? 3001 : 3000;
+    }
+  const GridResult r = grid_result(table, 0, 4, true);
+  const auto value = [&](const std::string& key) {
+    for (const GridFigure& f : r.figures)
+      if (f.key == key) return f.figure.value;
+    return -1.0;
+  };
+  CHECK(value("sda") == 75);
+  CHECK(value("ase") == 25);
+  CHECK(value("leed_option_2") == 75);
+  const auto verdict = [&](const std::string& title) {
+    for (const GridRequirement& q : r.requirements)
+      if (q.title == title) return q.verdict;
+    FAIL("no requirement " << title);
+    return YearVerdict::undecided;
+  };
+  CHECK(verdict("LEED v4.1 option 1, 3 points: sDA") == YearVerdict::met);  // 75 of 75 %
+  CHECK(verdict("LEED v4.1 option 1: ASE") == YearVerdict::not_met);
+  CHECK(verdict("LEED v4.1 option 2, 3 points: 300 to 3000 lx at 9 and 15 h") ==
+        YearVerdict::not_met);
+  CHECK(verdict("EN 17037 minimum: 300 lx in half of the daylight hours") == YearVerdict::met);
+}
+
+TEST_CASE("a requirement within the error of its limit is undecided") {
+  FigureTable table(2, 2);
+  for (size_t set = 0; set < 3; ++set)  // the replicates disagree about one of two sensors
+    for (size_t s = 0; s < 2; ++s)
+      table.at(s, set)[size_t(SensorFigure::da)] = s == 0 || set == 2 ? 60 : 40;
+  const GridResult r = grid_result(table, 0, 2, false);
+  CHECK(r.requirements[0].figure.value == 50);
+  CHECK(r.requirements[0].figure.error == doctest::Approx(25));  // of 50 and 100 %
+  CHECK(r.requirements[0].verdict == YearVerdict::undecided);    // at least 40 %
+}
