@@ -31,7 +31,7 @@ TEST_CASE("light samples of cells follow the seed and do not depend on the numbe
   for (int i = 0; i < 40; ++i)
     map.add({{-1.8f + 0.09f * float(i), 0.3f, 0}, {0, 0, 1}, {0, 0, 1}, 1e-4f}, 1, true);
   const LightTreeDirect direct(scene);
-  const std::vector<uint8_t> samples(map.size(), 2);
+  const std::vector<uint16_t> samples(map.size(), 2);
   const auto lit = [&](uint64_t seed, int threads) {
     CellDirectLight light;
     Counters counters;
