@@ -19,7 +19,7 @@ namespace troffer {
 
 ScriptScene::ScriptScene(const std::string& file, const ImportOptions& options)
     : scene_(with_joined_lights(import_scene(file, options))) {
-  for (const Light& e : scene_.lights) dimmed_.push_back({e.radiance});
+  for (const Light& e : scene_.lights) dimmed_.push_back({e.radiance, e.sky.ground});
 }
 
 ScriptScene::ScriptScene(const Vec3& up, bool is_photometric) : up_(up) {
@@ -65,7 +65,7 @@ void ScriptScene::restore(Extent&& before) {
 void ScriptScene::note_new_lights() {
   const size_t known = dimmed_.size();
   for (size_t i = known; i < scene_.lights.size(); ++i) {
-    Dimmed d{scene_.lights[i].radiance};
+    Dimmed d{scene_.lights[i].radiance, scene_.lights[i].sky.ground};
     for (size_t k = 0; k < known; ++k)
       if (scene_.lights[k].name == scene_.lights[i].name) d.dimmer = dimmed_[k].dimmer;
     dimmed_.push_back(d);
@@ -138,8 +138,11 @@ void ScriptScene::set_radiance(const std::string& name, Rgb radiance) {
 
 void ScriptScene::apply_dimmers() {
   Scene& scene = change();
-  for (size_t i = 0; i < dimmed_.size(); ++i)
-    scene.lights[i].radiance = dimmed_[i].radiance * float(dimmed_[i].dimmer);
+  for (size_t i = 0; i < dimmed_.size(); ++i) {
+    const auto dimmer = float(dimmed_[i].dimmer);
+    scene.lights[i].radiance = dimmed_[i].radiance * dimmer;
+    scene.lights[i].sky.ground = dimmed_[i].ground * dimmer;
+  }
 }
 
 size_t ScriptScene::material_named(const std::string& name) const {
@@ -177,7 +180,7 @@ void ScriptScene::add_light(const DaylightOptions& options) {
   std::vector<Dimmed> dimmed;
   for (const Light& e : changed.lights) {
     const auto known = dimmers.find(e.name);
-    dimmed.push_back({e.radiance, known == dimmers.end() ? 1 : known->second});
+    dimmed.push_back({e.radiance, e.sky.ground, known == dimmers.end() ? 1 : known->second});
   }
   change() = std::move(changed);
   dimmed_ = std::move(dimmed);

@@ -83,7 +83,7 @@ class ScriptScene {
 
  private:
   struct Dimmed {
-    Rgb radiance;  // at dimmer 1
+    Rgb radiance, ground;  // at dimmer 1; ground: of a sky
     double dimmer = 1;
   };
   // Sizes of all lists of the scene, and what else appending changes.

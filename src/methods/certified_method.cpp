@@ -129,7 +129,8 @@ std::unique_ptr<Integrator> cached_paths_if_cheaper(const MethodPlan& plan, cons
   const PathForecast cached = forecast_paths(*cached_paths(in, cells, {}), *in.cells->view, error,
                                              most, in.cells->seed, in.cells->counters);
   const double gathers = least_cost_of_gathers(*in.cells->view, error);
-  const bool is_cheaper = cached.rays < std::min(plan.forecast->rays, gathers);
+  // Gathers share their rays between pixels and mostly err by half of what is asked.
+  const bool is_cheaper = cached.rays < std::min(plan.forecast->rays, gathers / 2);
   in.cells->decisions.push_back(
       {"paths that end at cells", is_cheaper ? "for the whole picture" : "no",
        fmt::format("they would take {:.3g} viewing rays per pixel and {:.3g} million rays; gathers "

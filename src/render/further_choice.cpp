@@ -34,26 +34,41 @@ TestResult seen_by(std::span<const TestPixel> pixels, const TestedWay& tested) {
   return seen;
 }
 
+// Returns the variance of a ray, over the squared allowed error, for which so many are planned: the
+// inverse of samples_for().
+double planned_variance(double rays, double most_even) {
+  return most_even > 0 && rays > sqr(most_even) ? sqr(rays / most_even) : rays;
+}
+
 }  // namespace
 
 FurtherChoice choose_further_way(std::span<const TestPixel> pixels,
                                  std::span<const TestedWay> tested, double most_even) {
   TROFFER_CHECK(!pixels.empty() && !tested.empty());
-  double planned = 0, expected = 0;
+  const auto count = double(pixels.size());
+  double planned = 0, expected = 0, of_plan = 0;
   for (const TestPixel& p : pixels) {
-    planned += p.planned / double(pixels.size());
-    expected += p.luminance / p.allowed / double(pixels.size());
+    planned += p.planned / count;
+    expected += p.luminance / p.allowed / count;
+    of_plan += planned_variance(p.planned, most_even) / count;
   }
   TROFFER_CHECK(planned > 0);
+  // First rays have been seen twice, around the test pixels and in the test. Others do not vary
+  // less.
+  const double of_first = 0.5 * (seen_by(pixels, tested.front()).variance + of_plan);
   FurtherChoice best{tested.front().way};
   double least = 0;
   for (const TestedWay& t : tested) {
     const TestResult seen = seen_by(pixels, t);
-    const double work = seen.variance * t.cost;
+    // Light that no test ray has brought comes with a chance of at most 3 / n (95 %).
+    const double missing = std::max(expected - seen.mean, 0.0),
+                 rare = sqr(missing) * double(t.luminances.size()) / 3,
+                 variance = best.is_tested ? std::max(seen.variance + rare, of_first) : of_first,
+                 work = variance * t.cost;
     const bool may_miss_light = 2 * seen.mean < expected;
     if (best.is_tested && (may_miss_light || work >= least)) continue;
     least = work;
-    best = {t.way, true, samples_for({.chance = seen.variance}, 1, most_even, 0), 1};
+    best = {t.way, true, samples_for({.chance = variance}, 1, most_even, 0), 1};
   }
   best.times = best.rays / planned;
   return best;

@@ -50,7 +50,8 @@ struct TestPixel {
 // Returns the way of least cost for a given error. The first of `tested` is like the first rays of
 // a pixel. Other ways whose test rays bring less than half the light that the first rays have seen
 // are out: the rest may come in rays so rare and bright that no test shows their variance, such as
-// samples of a lamp behind a pinhole. most_even: as in samples_for() (sample_spread.h).
+// samples of a lamp behind a pinhole. The variance of first rays is the mean of the plan and the
+// test; no other way is taken to have less. most_even: as in samples_for() (sample_spread.h).
 FurtherChoice choose_further_way(std::span<const TestPixel> pixels,
                                  std::span<const TestedWay> tested, double most_even);
 

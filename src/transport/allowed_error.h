@@ -20,9 +20,11 @@ inline double usual_luminance(std::vector<double> values) {
 // Returns the error allowed to a pixel of this luminance. `error` is the relative error asked for,
 // `typical` the typical luminance of the picture. Pixels darker than `typical` may have the error
 // of a typical one. Brighter pixels are judged relative to their own luminance, as a display or a
-// tone map shows them.
+// tone map shows them, but at most to four times the typical one: what is brighter is shown white,
+// and the pixels at its outline are not.
 inline double allowed_error(double error, double luminance, double typical) {
-  return error * std::max(luminance, typical);
+  constexpr double white = 4;  // times the typical luminance
+  return error * (typical > 0 ? std::clamp(luminance, typical, white * typical) : luminance);
 }
 
 }  // namespace troffer

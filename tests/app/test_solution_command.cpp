@@ -161,6 +161,7 @@ TEST_CASE("radiosity --cells computes cells of all surfaces for any view, also u
     std::vector<std::string> alone(words.begin(), words.end());
     alone.erase(std::find(alone.begin(), alone.end(), "--solution"),
                 std::find(alone.begin(), alone.end(), "--solution") + 2);
+    alone.insert(alone.end(), {"--indirect", "cells"});
     REQUIRE(run_program(folder, alone).status == 0);
     CHECK(mean(folder.path("o.exr")) == doctest::Approx(by_kept).epsilon(5e-3));
     CHECK(rounds < rounds_told(folder));

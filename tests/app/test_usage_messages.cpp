@@ -103,8 +103,8 @@ TEST_CASE("messages about unreadable values say what to write") {
         "--tone-map: there is no 'fimlic'; did you mean 'filmic'? (filmic or none)"},
        {render({"--coherence", "yes"}), "--coherence: there is no 'yes', but on or off"},
        {render({"--method", "certifed"}),
-        "--method: there is no 'certifed'; did you mean 'certified'? (certified, kj92, fixed or "
-        "path)"},
+        "--method: there is no 'certifed'; did you mean 'certified'? (certified, kj92, fixed, "
+        "path or cached-path)"},
        {render({"--indirect", "nothing"}),
         "--indirect: there is no 'nothing', but auto, cells, radiosity or none"},
        {{"radiosity", "a.gltf", "-o", "a.trad", "--element-size", "0,5"},

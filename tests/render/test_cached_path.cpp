@@ -44,7 +44,7 @@ TEST_CASE("cached paths: matte and coated surfaces agree with path tracing, at l
   CHECK(cached.mean.mean() == doctest::Approx(paths.mean.mean()).epsilon(0.01));
   const auto variance = [](const Ensemble& e) {
     double sum = 0;
-    for (const auto& p : e.pixels) sum += p.variance();
+    for (const auto& p : e.pixels) sum += p.standard_error() * p.standard_error();
     return sum;
   };
   CHECK(variance(cached) < 0.9 * variance(paths));

@@ -184,7 +184,7 @@ int wanted_amid(const Value& value, bool tells = false) {
   options.error = 0.02f;
   options.is_everywhere = true;
   const PixelLooks looks(film, false, window, middle, middle + 1);
-  return samples_wanted({looks, records, edges, 1}, middle, middle, false, 4, 1024, options).count;
+  return samples_wanted({looks, records, edges, 1}, middle, middle, false, 4, 1024, options);
 }
 
 }  // namespace

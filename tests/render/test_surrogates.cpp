@@ -157,7 +157,8 @@ TEST_CASE("direct light only: edges get the rays they need, and the error is est
   double squares = 0;
   for (size_t p = 0; p < all[0].pixels.size(); ++p) {
     Moments pixel;
-    for (const Image& image : all) pixel.add(double(luminance(image.pixels[p])));
+    for (const Image& image : all)
+      pixel.add(std::min(double(luminance(image.pixels[p])), 4 * means.mean()));
     squares += pixel.variance_of_mean() * pictures / double(all[0].pixels.size());
   }
   const double made = std::sqrt(squares) / means.mean();
@@ -227,9 +228,9 @@ TEST_CASE("refinement: pixels behind blinds have about the asked error, for two 
     const Image image = render_now(scene, at_window, o).layers[0].image;
     double sum = 0;
     for (size_t i = 0; i < image.pixels.size(); ++i) {
-      const auto off = [&](const Image& half) {
-        return double(image.pixels[i].g) - double(half.pixels[i].g);
-      };
+      // As seen: both limited to four times the mean, like picture_error().
+      const auto seen = [&](const Image& of) { return std::min(double(of.pixels[i].g), 4 * mean); };
+      const auto off = [&](const Image& half) { return seen(image) - seen(half); };
       sum += off(halves[0]) * off(halves[1]);
     }
     return std::sqrt(std::max(sum, 0.0) / double(image.pixels.size())) / mean;
