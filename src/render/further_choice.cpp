@@ -46,8 +46,10 @@ FurtherChoice choose_further_way(std::span<const TestPixel> pixels,
                                  std::span<const TestedWay> tested, double most_even) {
   TROFFER_CHECK(!pixels.empty() && !tested.empty());
   const auto count = double(pixels.size());
-  double planned = 0, expected = 0, of_plan = 0;
+  constexpr double least_missing = 0.1;
+  double planned = 0, expected = 0, of_plan = 0, first_rays = 0;
   for (const TestPixel& p : pixels) {
+    first_rays += p.rays;
     planned += p.planned / count;
     expected += p.luminance / p.allowed / count;
     of_plan += planned_variance(p.planned, most_even) / count;
@@ -65,7 +67,10 @@ FurtherChoice choose_further_way(std::span<const TestPixel> pixels,
                  rare = sqr(missing) * double(t.luminances.size()) / 3,
                  variance = best.is_tested ? std::max(seen.variance + rare, of_first) : of_first,
                  work = variance * t.cost;
-    const bool may_miss_light = 2 * seen.mean < expected;
+    const double noise =
+        std::sqrt(of_first / first_rays + seen.variance / double(t.luminances.size()));
+    const bool may_miss_light =
+        2 * seen.mean < expected || missing > least_missing * expected + 2 * noise;
     if (best.is_tested && (may_miss_light || work >= least)) continue;
     least = work;
     best = {t.way, true, samples_for({.chance = variance}, 1, most_even, 0), 1};

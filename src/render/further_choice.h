@@ -45,6 +45,7 @@ struct TestPixel {
   double luminance = 0;
   double allowed = 1;  // error of the pixel
   double planned = 0;  // further rays
+  double rays = 4;     // first rays
 };
 
 // Returns the way of least cost for a given error. The first of `tested` is like the first rays of

@@ -138,7 +138,7 @@ TestPixel TileTracer::test_pixel(const Pixel2& p, const TileWork& w) const {
   return {has_known ? e.rest : e.luminance,
           allowed_error(options_.error, e.luminance,
                         std::max(double(w.rays.request.typical_luminance), 1e-30)),
-          double(further_.at(p.x, p.y).samples) - further_.first_spp()};
+          double(further_.at(p.x, p.y).samples) - further_.first_spp(), double(e.samples)};
 }
 
 // Tests all ways at a few pixels of a tile that wants many further rays.
