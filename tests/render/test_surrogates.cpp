@@ -228,7 +228,7 @@ TEST_CASE("refinement: pixels behind blinds have about the asked error, for two 
     const Image image = render_now(scene, at_window, o).layers[0].image;
     double sum = 0;
     for (size_t i = 0; i < image.pixels.size(); ++i) {
-      // As seen: both limited to four times the mean, like picture_error().
+      // Both limited to four times the mean, like picture_error().
       const auto seen = [&](const Image& of) { return std::min(double(of.pixels[i].g), 4 * mean); };
       const auto off = [&](const Image& half) { return seen(image) - seen(half); };
       sum += off(halves[0]) * off(halves[1]);

@@ -45,7 +45,7 @@ class HbjsonParts {
   Scene& scene_;
   std::set<std::string> partners_;  // faces whose partner in another room has been added
 
-  // What a part shows: its modifier, and further shades of its state.
+  // Appearance of a part: its modifier, and further shades of its state.
   struct Shown {
     std::string modifier;
     std::optional<JsonNode> state;
