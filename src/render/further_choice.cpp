@@ -10,7 +10,8 @@ namespace troffer {
 
 namespace {
 
-// Result of the test rays of a way, over the allowed error: mean luminance, and variance of one ray.
+// Result of the test rays of a way, over the allowed error: mean luminance, and variance of one
+// ray.
 struct TestResult {
   double mean = 0, variance = 0;
 };
