@@ -1,4 +1,5 @@
-// Reads files that specify what `report` assesses (docs/reference/report.md): JSON, or tables of surfaces.
+// Reads files that specify what `report` assesses (docs/reference/report.md): JSON, or tables of
+// surfaces.
 #pragma once
 
 #include <string>

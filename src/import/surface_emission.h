@@ -1,8 +1,8 @@
 // Correction for surfaces whose emission has other units than the lamps beside them.
 //
 // Blender's exporter writes the strength of emission, W/(m² sr), as cd/m² without a factor, but
-// converts the power of lamps, W, by 683 lm/W (docs/guide/from-blender.md). A luminous panel is then 683
-// times too dark.
+// converts the power of lamps, W, by 683 lm/W (docs/guide/from-blender.md). A luminous panel is
+// then 683 times too dark.
 #pragma once
 
 #include "scene/scene.h"

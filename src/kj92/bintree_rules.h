@@ -1,6 +1,6 @@
 // Rules of the 1992 bintree, one function each, on the nodes of a tree. Tags in brackets name the
-// rows of the table in docs/method/bintree.md. Bintree (bintree.h) applies them in turn. References: [1]
-// Kok & Jansen, Eurographics '92, §3 and §4.
+// rows of the table in docs/method/bintree.md. Bintree (bintree.h) applies them in turn.
+// References: [1] Kok & Jansen, Eurographics '92, §3 and §4.
 #pragma once
 
 #include <cstdint>

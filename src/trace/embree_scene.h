@@ -28,8 +28,8 @@ struct HitTest {
   const Scene* scene = nullptr;
   const Mesh* mesh = nullptr;  // null: spheres or disks
   bool has_holes = false, hides_backs = false, has_panes = false;
-  bool hides_in_places = false;  // panes are opaque where alpha is 1
-  std::vector<uint8_t> is_pane;  // per primitive; empty: all are panes, if any is
+  bool hides_in_places = false;               // panes are opaque where alpha is 1
+  std::vector<uint8_t> is_pane;               // per primitive; empty: all are panes, if any is
   std::vector<uint8_t> has_coincident_front;  // per triangle (coincident_fronts); empty: none has
 
   bool is_pane_at(uint32_t primitive) const {

@@ -1,4 +1,5 @@
-// Answers the page's requests: the paths after the token (docs/reference/view.md). HttpServer calls answer().
+// Answers the page's requests: the paths after the token (docs/reference/view.md). HttpServer calls
+// answer().
 #pragma once
 
 #include <atomic>

@@ -1,7 +1,7 @@
 // The analytical cases of CIE 171:2006 on the command line, with default settings. If the
-// environment has TROFFER_CIE171=FILE, all cases run and the table of docs/results/cie171.md is written to
-// FILE. Otherwise only some of the skies run.
-// References: [1] CIE 171:2006, "Test cases to assess the accuracy of lighting computer programs".
+// environment has TROFFER_CIE171=FILE, all cases run and the table of docs/results/cie171.md is
+// written to FILE. Otherwise only some of the skies run. References: [1] CIE 171:2006, "Test cases
+// to assess the accuracy of lighting computer programs".
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>

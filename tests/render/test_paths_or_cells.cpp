@@ -156,8 +156,8 @@ TEST_CASE("--indirect auto: cells are abandoned if they cost more than paths") {
   o.height = 120;
   o.error = 0.02;
   // Making cells begins,
-  REQUIRE(forecast_paths(PathIntegrator(scene, {}), view, 0.75 * o.error, 1 << 14, o.seed, counters).rays_for_cells >
-          0);
+  REQUIRE(forecast_paths(PathIntegrator(scene, {}), view, 0.75 * o.error, 1 << 14, o.seed, counters)
+              .rays_for_cells > 0);
   // but is given up.
   CHECK(render_now(scene, above, o).statistics.is_by_paths);
 }

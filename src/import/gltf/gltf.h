@@ -1,8 +1,7 @@
 // Importer of glTF 2.0 files (.gltf and .glb) into a Scene. It reads meshes, instances, materials,
-// lights, cameras, skins, morph targets and animations. docs/reference/formats.md lists what becomes of each
-// part of the format and of each extension. Positions are in metres; emission is in cd/m² (the
-// scene is photometric).
-// References: [1] Khronos, glTF 2.0 Specification, 2021.
+// lights, cameras, skins, morph targets and animations. docs/reference/formats.md lists what
+// becomes of each part of the format and of each extension. Positions are in metres; emission is in
+// cd/m² (the scene is photometric). References: [1] Khronos, glTF 2.0 Specification, 2021.
 #pragma once
 
 #include <string>

@@ -14,8 +14,8 @@ namespace troffer {
 // Returns the scene of the file and of the files that its !xform and !cat include. Files are looked
 // up in its folder and never outside. No command is ever run. Cameras come from comments with view
 // options, otherwise from NAME.vf next to NAME.rad. Lights are named by their identifiers.
-// docs/reference/radiance.md lists what is supported, approximated, left out and refused. Throws InputError,
-// with line and column, for malformed files.
+// docs/reference/radiance.md lists what is supported, approximated, left out and refused. Throws
+// InputError, with line and column, for malformed files.
 Scene import_radiance(const std::string& path);
 
 }  // namespace troffer
