@@ -77,7 +77,7 @@ TEST_CASE("classes of indices are few, small and on one side of 1") {
     // 30 classes share the range of 0.7 to 1.7: half of ln(1.7 / 0.7) / 30 is 1.5 %.
     CHECK(std::abs(std::log(r / x)) < 0.017f);
   }
-  // As many tables as indices: each index has its own.
+  // Each index has a table of its own.
   IndexClasses few;
   for (const float x : {1.5f, 1.33f, 1.5f, 2.4f}) few.add(x);
   few.divide(32);

@@ -246,7 +246,7 @@ TEST_CASE("of two faces between rooms the second is moved and has no glass") {
                   room("b", "a", true) + R"(],"properties":{"radiance":{}}})");
   CHECK(look_of(scene, "generic_interior_window_vis_0.88").area == doctest::Approx(0.36));
   CHECK(look_of(scene, "generic_wall_0.50").area == doctest::Approx(2 * 0.64));
-  // Of the first, x = 0; of the second, which looks along -x from x > 0, 0.02.
+  // The first gives x = 0, the second, which looks along -x from x > 0, gives x = 0.02.
   const Boxd box = bounds_in_file(scene);
   CHECK(std::max(std::abs(box.lower.x), std::abs(box.upper.x)) == doctest::Approx(0.02));
 }
