@@ -38,7 +38,7 @@ EnvironmentSamplerInputs environment_inputs(const PreparedScene& scene,
 void ClusterLighting::add(std::span<const uint32_t> members) {
   DrawingBudget budget = budget_;
   budget.effort_divisor = s_.request.effort_divisor;
-  budget.is_picture = s_.request.is_picture;
+  budget.typical = s_.request.typical_luminance;
   choose_lights(sources_.groups(), ball_about(s_.hits, members), members.size(), budget, s_.chosen);
   const bool is_closed_off = std::all_of(members.begin(), members.end(),
                                          [&](uint32_t m) { return s_.is_closed_off[m] != 0; });
@@ -98,7 +98,7 @@ std::span<const float> ClusterLighting::certify(std::span<const uint32_t> member
   counters_.mask_facets += after.mask_facets - before.mask_facets;
   counters_.points += after.points - before.points;
   DrawingBudget budget = budget_;
-  budget.is_picture = s_.request.is_picture;
+  budget.typical = s_.request.typical_luminance;
   sample_open_parts(
       {scene_, sources_.competition(), s_.hits, members, s_.cluster, s_.integrand.sources()},
       budget, s_.drawn, out_, counters_);

@@ -28,7 +28,7 @@ struct DrawingBudget {
   uint32_t matte_draw_factor =
       1;  // factor on `draws` where no hit is glossy, as matte samples cost less
   uint32_t effort_divisor = 1;  // SampleRequest::effort_divisor
-  bool is_picture = false;      // SampleRequest::is_picture
+  float typical = 0;            // SampleRequest::typical_luminance
 };
 
 // The lights of a cluster by treatment: certified or sampled. Scratch memory and result of

@@ -238,14 +238,15 @@ double points_for(double spread, double allowed) {
   return std::max(allowed > 0 ? clutter_of_rays * std::pow(spread / allowed, 4.0 / 3) : 0.0, 1.0);
 }
 
-// Samples per pixel for each sun, and for the sky. The sky's error budget is relative to the sky's
-// own light.
+// Samples per pixel for each sun, and for the sky. The sky's error is relative to the sky's own
+// light, or in pictures to the light of a typical pixel if that is more.
 struct FarNumbers {
   double sun = 0, sky = 0;
 };
 
-FarNumbers numbers_for(const EnvironmentSamplerInputs& d, const MeanEnvironmentLight& light,
-                       const EnvironmentShare& share, const DrawingBudget& budget) {
+FarNumbers numbers_for(const EnvironmentSamplerInputs& d, std::span<const uint32_t> members,
+                       const MeanEnvironmentLight& light, const EnvironmentShare& share,
+                       const DrawingBudget& budget) {
   // The viewing rays of a pixel differ in any case; their hits need not be known much better than
   // that.
   constexpr double most_viewing_rays = 4, part_of_rest = 0.05;
@@ -256,7 +257,10 @@ FarNumbers numbers_for(const EnvironmentSamplerInputs& d, const MeanEnvironmentL
       (most_viewing_rays * double(budget.viewing_rays));
   const double sky = share.open_sky * light.sky;
   const double arrives = sky + share.open_sun * light.suns + light.others;
-  const auto allowed = [&](double of) { return std::sqrt(sqr(error * of) + left); };
+  const double typical = typical_light(d.hits, members, double(budget.typical));
+  const auto allowed = [&](double of) {
+    return std::sqrt(sqr(error * std::max(of, typical)) + left);
+  };
   FarNumbers n;
   if (d.points.suns() > 0)
     n.sun = points_for(std::sqrt(share.spread_of_sun) * light.suns, allowed(arrives));
@@ -270,7 +274,7 @@ void cast_environment_rays(const EnvironmentSamplerInputs& d, std::span<const ui
                            const EnvironmentShare& share, std::span<const float> seen,
                            const DrawingBudget& budget, EnvironmentRays& s, RadianceBatch& out,
                            Counters& counters) {
-  const FarNumbers wanted = numbers_for(d, mean_light(d, members, seen), share, budget);
+  const FarNumbers wanted = numbers_for(d, members, mean_light(d, members, seen), share, budget);
   const double most = share.seems_closed ? most_of_closed * double(budget.viewing_rays) : 1e30;
   // Where the scene seems closed, all light that enters is left to a pixel's first rays, as if much
   // arrived.
@@ -282,13 +286,11 @@ void cast_environment_rays(const EnvironmentSamplerInputs& d, std::span<const ui
   s.arrived.assign(members.size(), 0);
   if (!seen.empty()) s.arrived.assign(seen.begin(), seen.end());
   s.numbers.assign(members.size(), ~0u);
-  EnvironmentSampleCounts of_sun(d.hits, members, budget, budget.is_picture,
-                                 std::min(wanted.sun, most), open,
+  EnvironmentSampleCounts of_sun(d.hits, members, budget, std::min(wanted.sun, most), open,
                                  share.seems_closed ? 0 : least_of_sun);
   for (size_t sun = 0; sun < d.points.suns(); ++sun) casting.cast(int(sun), of_sun);
   const double least = share.seems_closed ? 0 : least_of_sky;
-  EnvironmentSampleCounts of_sky(d.hits, members, budget, budget.is_picture,
-                                 std::min(wanted.sky, most), open, least);
+  EnvironmentSampleCounts of_sky(d.hits, members, budget, std::min(wanted.sky, most), open, least);
   casting.set_numbers(of_sky.usual(), share.open_sky);
   casting.cast(-1, of_sky);
 }

@@ -12,6 +12,16 @@
 
 namespace troffer {
 
+// Returns the light at hits with which their pixels show the luminance `typical`, luminance × sr.
+// Light that is weaker may have the error of this one, as in allowed_error.h.
+inline double typical_light(const WaitingHits& hits, std::span<const uint32_t> members,
+                            double typical) {
+  if (!(typical > 0)) return 0;
+  double weight = 0;
+  for (const uint32_t m : members) weight += double(luminance(hits.weights[m]));
+  return weight > 0 ? typical * double(members.size()) / weight : 0;
+}
+
 // Shares a pixel's samples among its hits. In pictures, a pixel's further viewing rays, and those
 // of pixels that show several things, get fewer samples: such pixels err mostly by what they show.
 class EnvironmentSampleCounts {
@@ -19,12 +29,12 @@ class EnvironmentSampleCounts {
   // of_pixel: samples for all usual viewing rays of a pixel together. open: share of the light that
   // arrives. least: fewest samples of a hit that gets any.
   EnvironmentSampleCounts(const WaitingHits& hits, std::span<const uint32_t> members,
-                          const DrawingBudget& budget, bool is_picture, double of_pixel,
-                          double open, double least = 0)
+                          const DrawingBudget& budget, double of_pixel, double open,
+                          double least = 0)
       : hits_(hits),
         members_(members),
         first_(uint32_t(budget.viewing_rays)),
-        is_picture_(is_picture) {
+        is_picture_(budget.typical > 0) {
     constexpr double most_points = 256;
     if (!(of_pixel > 0)) return;
     const double each = std::clamp(of_pixel / double(budget.viewing_rays), least, most_points);

@@ -41,7 +41,7 @@ class FarDrawing {
 
   // Number of samples per pixel. N points of a Sobol sequence over light of which the share p
   // arrives err by about (p (1 - p))^½ N^-¾, relative to that light.
-  double points_of_pixel(double error, double p) const {
+  double points_of_pixel(double error, double typical, double p) const {
     double of_left = 0, seen = 0;
     for (size_t i = 0; i < d_.members.size(); ++i) {
       of_left += left_of(i);
@@ -49,8 +49,10 @@ class FarDrawing {
     }
     const double open = std::clamp(p, least_open, 1 - least_open);
     const double arrives = seen + open * of_left;
-    if (!(arrives > 0)) return 0;
-    return clutter * std::pow(of_left * std::sqrt(open * (1 - open)) / (error * arrives), 4.0 / 3);
+    const double counts =
+        std::max(arrives, double(d_.members.size()) * typical_light(d_.hits, d_.members, typical));
+    if (!(counts > 0)) return 0;
+    return clutter * std::pow(of_left * std::sqrt(open * (1 - open)) / (error * counts), 4.0 / 3);
   }
 
   void of_member(size_t i, uint32_t n, uint32_t before, RadianceBatch& out) {
@@ -172,9 +174,9 @@ void sample_open_parts(const OpenPartInputs& draws, const DrawingBudget& budget,
                        DrawnLightsScratch& s, RadianceBatch& out, Counters& counters) {
   if (draws.cluster.memory.left.empty()) return;
   FarDrawing drawing(draws, s);
-  const double of_pixel =
-      drawing.points_of_pixel(double(budget.error), draws.cluster.memory.far_open);
-  EnvironmentSampleCounts numbers(draws.hits, draws.members, budget, budget.is_picture, of_pixel,
+  const double of_pixel = drawing.points_of_pixel(double(budget.error), double(budget.typical),
+                                                  draws.cluster.memory.far_open);
+  EnvironmentSampleCounts numbers(draws.hits, draws.members, budget, of_pixel,
                                   draws.cluster.memory.far_open);
   if (numbers.usual() == 0) return;
   for (size_t i = 0; i < draws.members.size(); ++i) {

@@ -15,6 +15,9 @@ class CellsIndirect final : public IndirectLight {
   CellsIndirect(std::shared_ptr<const Cells> cells, std::shared_ptr<const GatherRecords> records)
       : cells_(std::move(cells)), records_(std::move(records)) {}
 
+  // Replaces the records; scratch memory made before is then invalid.
+  void set_records(std::shared_ptr<const GatherRecords> records) { records_ = std::move(records); }
+
   std::unique_ptr<IndirectLightScratch> make_scratch() const override;
   void queue(WaveHits& wave, IndirectLightScratch& scratch, RadianceBatch& out,
              Counters& counters) const override;

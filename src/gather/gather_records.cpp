@@ -53,8 +53,9 @@ std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const Pic
   const auto first = [&](int v) { return std::max(v - border, 0) / side * side; };
   const auto last = [&](int v) { return (v + border + side - 1) / side * side; };
   PixelWindow w = view.window;
-  w = {std::max(first(w.x0), view.image.x0), std::max(first(w.y0), view.image.y0),
-       std::min(last(w.x1), view.image.x1), std::min(last(w.y1), view.image.y1)};
+  if (!options.is_trial)
+    w = {std::max(first(w.x0), view.image.x0), std::max(first(w.y0), view.image.y0),
+         std::min(last(w.x1), view.image.x1), std::min(last(w.y1), view.image.y1)};
   std::unique_ptr<GatherRecords> records(new GatherRecords(w));
   GatherPass pass(cells, view, options, stop, *records);
   if (!pass.run(progress, counters)) return nullptr;

@@ -41,6 +41,9 @@ struct GatherOptions {
   int threads = 0;
   uint64_t seed = 0;
   ProcessGroup* group = nullptr;  // processes that make the same picture; may be null
+  // Gathers in the window alone. Pixels near its edge then have fewer neighbours than in the whole
+  // picture, so only the cost counts.
+  bool is_trial = false;
 };
 
 // Sums over the rays of a gather.

@@ -22,13 +22,24 @@ float invert_line(float a, float b, float t) {
   return t * (2 * a + (b - a) * t) / (a + b);
 }
 
-// Returns the index i with cdf[i] <= u < cdf[i + 1], and rescales u to that step.
-int choose(const float* cdf, size_t n, float& u) {
-  const float* next = std::upper_bound(cdf, cdf + n + 1, u);
-  const auto i = std::clamp<ptrdiff_t>(next - cdf - 1, 0, ptrdiff_t(n) - 1);
+// Returns the index i with cdf[i] <= u < cdf[i + 1], and rescales u to that step. guide: as filled
+// by fill_guide().
+int choose(const float* cdf, const uint32_t* guide, size_t n, float& u) {
+  size_t i = guide[std::min(size_t(u * float(n)), n - 1)];
+  while (i > 0 && cdf[i] > u) --i;
+  while (i + 1 < n && cdf[i + 1] <= u) ++i;
   const float step = cdf[i + 1] - cdf[i];
   u = step > 0 ? std::clamp((u - cdf[i]) / step, 0.0f, 1.0f) : 0.0f;
   return int(i);
+}
+
+// Sets guide[k] to the step that holds k / n, from where a search takes two steps on average.
+void fill_guide(const float* cdf, size_t n, uint32_t* guide) {
+  size_t i = 0;
+  for (size_t k = 0; k < n; ++k) {
+    while (i + 1 < n && cdf[i + 1] <= float(k) / float(n)) ++i;
+    guide[k] = uint32_t(i);
+  }
 }
 
 // Sets cdf to the running sums of `weights` over their total, ending with 1. Returns the total.
@@ -72,6 +83,8 @@ DirectionTable::DirectionTable(SphereMap map, int width, int height,
   row_factors_.resize(rows());
   cdf_y_.resize(rows() + 1);
   cdf_x_.resize(rows() * stride);
+  guide_y_.resize(rows());
+  guide_x_.resize(rows() * columns());
   std::vector<double> of_row(rows()), of_cell(columns());
   for (int y = 0; y <= height; ++y) {
     const double v0 = double(edge(y, height)), v1 = double(edge(y + 1, height));
@@ -86,8 +99,10 @@ DirectionTable::DirectionTable(SphereMap map, int width, int height,
       of_cell[size_t(x)] = mean * double(edge(x + 1, width) - edge(x, width));
     }
     of_row[size_t(y)] = fill_cdf(of_cell, cdf_x_.data() + size_t(y) * stride) * steradians;
+    fill_guide(row_cdf(y), columns(), guide_x_.data() + size_t(y) * columns());
   }
   integral_ = fill_cdf(of_row, cdf_y_.data());
+  fill_guide(cdf_y_.data(), rows(), guide_y_.data());
 }
 
 DirectionTable::Corners DirectionTable::corners(const Cell& c) const {
@@ -122,8 +137,8 @@ float DirectionTable::pdf_at(const Cell& c, const Vec2& uv) const {
 Vec3 DirectionTable::sample(const Vec2& u, float& pdf) const {
   Cell c;
   float along_y = u.y, along_x = u.x;
-  c.y = choose(cdf_y_.data(), rows(), along_y);
-  c.x = choose(row_cdf(c.y), columns(), along_x);
+  c.y = choose(cdf_y_.data(), guide_y_.data(), rows(), along_y);
+  c.x = choose(row_cdf(c.y), guide_x_.data() + size_t(c.y) * columns(), columns(), along_x);
   const Corners n = corners(c);
   c.place.y = sample_line(n.at00 + n.at10, n.at01 + n.at11, along_y);
   c.place.x =

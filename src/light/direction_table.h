@@ -53,6 +53,7 @@ class DirectionTable {
   std::vector<float> nodes_;          // (width + 2) × (height + 2)
   std::vector<float> row_factors_;    // mean steradians per area over each row of cells
   std::vector<float> cdf_y_, cdf_x_;  // from 0 to 1: over rows, and over the cells of each row
+  std::vector<uint32_t> guide_y_, guide_x_;  // where searches in them begin
 };
 
 }  // namespace troffer

@@ -11,6 +11,7 @@
 #include "certified/staged_direct.h"
 #include "gather/cells_indirect.h"
 #include "light/sky_patches.h"
+#include "methods/gather_trial.h"
 #include "methods/path.h"
 #include "methods/paths_indirect.h"
 #include "transport/wave_integrator.h"
@@ -50,12 +51,15 @@ std::shared_ptr<const Cells> cells_of(const MethodPlan& plan, const MethodInput&
   return cells;
 }
 
+GatherOptions gather_options(const MethodInput& in, const Cells& cells) {
+  return {error_of_gather(in.settings.error), cells.statistics().typical, in.settings.threads,
+          in.cells->seed, in.cells->group};
+}
+
 // Gathers from cells for the picture. Returns null after a stop.
 std::shared_ptr<const GatherRecords> gather(const MethodInput& in, const Cells& cells) {
-  const GatherOptions options{error_of_gather(in.settings.error), cells.statistics().typical,
-                              in.settings.threads, in.cells->seed, in.cells->group};
-  return GatherRecords::make(cells, *in.cells->view, options, part_of_progress(in, 0.4, 1),
-                             in.cells->stop, in.cells->counters);
+  return GatherRecords::make(cells, *in.cells->view, gather_options(in, cells),
+                             part_of_progress(in, 0.4, 1), in.cells->stop, in.cells->counters);
 }
 
 // One stage of direct light and its settings.
@@ -121,21 +125,30 @@ std::unique_ptr<Integrator> cached_paths(const MethodInput& in,
 }
 
 // Returns a path tracer that ends at the cells if test paths show that it costs less than path
-// tracing, and than the least that gathers from the cells cost; null otherwise.
+// tracing, and than gathers in a few windows of the picture; null otherwise. gathers: the
+// integrator that reads the records of `reflected`.
 std::unique_ptr<Integrator> cached_paths_if_cheaper(const MethodPlan& plan, const MethodInput& in,
-                                                    const std::shared_ptr<const Cells>& cells) {
+                                                    const std::shared_ptr<const Cells>& cells,
+                                                    const Integrator& gathers,
+                                                    CellsIndirect& reflected) {
   const double error = error_by_paths(in.settings.error);
   const int most = most_by_paths(in.settings.most_viewing_rays);
   const PathForecast cached = forecast_paths(*cached_paths(in, cells, {}), *in.cells->view, error,
                                              most, in.cells->seed, in.cells->counters);
-  const double gathers = least_cost_of_gathers(*in.cells->view, error);
-  // Gathers share their rays between pixels and mostly err by half of what is asked.
-  const bool is_cheaper = cached.rays < std::min(plan.forecast->rays, gathers / 2);
+  const GatherTrial trial =
+      try_gathers({gathers, reflected, *cells, *in.cells->view, gather_options(in, *cells),
+                   std::max(in.settings.viewing_rays, 1), in.settings.error, cached},
+                  in.cells->stop, in.cells->counters);
+  const bool is_cheaper = cached.rays < std::min(plan.forecast->rays, trial.cost);
+  std::string reason =
+      fmt::format("they would take {:.3g} viewing rays per pixel and {:.3g} million rays",
+                  cached.viewing_rays, cached.rays * 1e-6);
+  if (trial.cost > 0)
+    reason += fmt::format(
+        "; gathers {:.3g} million, of which {:.3g} to gather and {:.3g} for first viewing rays",
+        trial.cost * 1e-6, trial.of_gathers * 1e-6, trial.of_first * 1e-6);
   in.cells->decisions.push_back(
-      {"paths that end at cells", is_cheaper ? "for the whole picture" : "no",
-       fmt::format("they would take {:.3g} viewing rays per pixel and {:.3g} million rays; gathers "
-                   "take at least {:.3g} million",
-                   cached.viewing_rays, cached.rays * 1e-6, gathers * 1e-6)});
+      {"paths that end at cells", is_cheaper ? "for the whole picture" : "no", std::move(reason)});
   return is_cheaper ? cached_paths(in, cells, sampling_by_paths(cached, error, most)) : nullptr;
 }
 
@@ -152,19 +165,25 @@ std::unique_ptr<Integrator> make_by_cells(const MethodPlan& plan, const MethodIn
   const std::shared_ptr<const Cells> cells =
       cells_of(plan, in, *at_cells, in.cells->view != nullptr ? 0.4 : 1);
   if (!cells) return plan.forecast && !in.cells->stop.load() ? make_paths(plan, in) : nullptr;
-  if (plan.forecast)
-    if (std::unique_ptr<Integrator> paths = cached_paths_if_cheaper(plan, in, cells)) return paths;
-  std::shared_ptr<const GatherRecords> records;
-  if (in.cells->view != nullptr) records = gather(in, *cells);
-  if (in.cells->enough != nullptr) in.cells->quick = make_quick(in, occluders, cells, records);
-  if (in.cells->view != nullptr && !records) return nullptr;
   if (!further) further = std::move(at_cells);
   constexpr auto all = std::numeric_limits<uint32_t>::max();
-  const uint32_t samples = in.cells->view != nullptr ? uint32_t(in.settings.viewing_rays) : all;
-  return std::make_unique<WaveIntegrator>(
+  const bool is_picture = in.cells->view != nullptr;
+  const uint32_t samples = is_picture ? uint32_t(in.settings.viewing_rays) : all;
+  auto indirect = std::make_unique<CellsIndirect>(cells, nullptr);
+  CellsIndirect& reflected = *indirect;
+  auto gathers = std::make_unique<WaveIntegrator>(
       in.scene, std::make_unique<StagedDirect>(std::move(first), std::move(further), samples),
-      std::make_unique<CellsIndirect>(cells, records), false,
-      records ? cached_paths(in, cells, {}) : nullptr);
+      std::move(indirect), false, is_picture ? cached_paths(in, cells, {}) : nullptr);
+  if (plan.forecast)
+    if (std::unique_ptr<Integrator> paths =
+            cached_paths_if_cheaper(plan, in, cells, *gathers, reflected))
+      return paths;
+  std::shared_ptr<const GatherRecords> records;
+  if (is_picture) records = gather(in, *cells);
+  if (in.cells->enough != nullptr) in.cells->quick = make_quick(in, occluders, cells, records);
+  if (is_picture && !records) return nullptr;
+  reflected.set_records(std::move(records));
+  return gathers;
 }
 
 }  // namespace

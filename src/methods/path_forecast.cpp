@@ -131,24 +131,21 @@ double evenness_of(const std::vector<Tile>& tiles, double error, double typical)
                   most_evenness);
 }
 
-// Returns the mean number of viewing rays that a pixel needs for the error.
-double rays_wanted(const std::vector<Tile>& tiles, double error, double typical, double evenness,
-                   int most) {
-  double wanted = 0, pixels = 0;
-  for (const Tile& t : tiles) {
-    const double allowed = allowed_error(error, t.luminance, typical);
-    wanted +=
-        t.pixels * std::min(std::pow(t.variance / sqr(allowed), 1 / (1 + evenness)), double(most));
-    pixels += t.pixels;
-  }
-  return wanted / pixels;
+// Sets how many viewing rays pixels take, on average and in proportion to their noise.
+void set_rays(const std::vector<Tile>& tiles, double error, int most, PathForecast& f) {
+  std::vector<double> wanted;  // by each test pixel
+  for (const Tile& t : tiles)
+    wanted.insert(wanted.end(), size_t(t.pixels),
+                  std::pow(t.variance / sqr(allowed_error(error, t.luminance, f.typical)),
+                           1 / (1 + f.evenness)));
+  f.proportion = proportion_of_samples(wanted, f.evenness);
+  double sum = 0;
+  for (const double w : wanted)
+    sum += std::min(f.proportion * share_of_samples(w, f.evenness), double(most));
+  f.viewing_rays = std::max(sum / double(wanted.size()), double(least_first));
 }
 
 }  // namespace
-
-double least_cost_of_gathers(const PictureView& view, double error) {
-  return least_of_pixel(error) * double(view.image.width()) * double(view.image.height());
-}
 
 PathForecast forecast_paths(const Integrator& paths, const PictureView& view, double error,
                             int most, uint64_t seed, Counters& counters) {
@@ -158,17 +155,16 @@ PathForecast forecast_paths(const Integrator& paths, const PictureView& view, do
   const std::vector<Tile> tiles = tiles_of(stream, luminances(paths, rays, own));
   counters += own;
   PathForecast f;
-  const double typical = typical_of(tiles);
+  f.typical = typical_of(tiles);
   // If so few paths see nothing in most of the picture, the forecast is infinite.
   f.viewing_rays = std::numeric_limits<double>::infinity();
-  if (typical > 0) {
-    f.evenness = evenness_of(tiles, error, typical);
-    f.viewing_rays =
-        std::max(rays_wanted(tiles, error, typical, f.evenness, most), double(least_first));
+  if (f.typical > 0) {
+    f.evenness = evenness_of(tiles, error, f.typical);
+    set_rays(tiles, error, most, f);
   }
   const double pixels = double(view.image.width()) * double(view.image.height());
   f.rays = cost_of(own) / double(rays.size()) * f.viewing_rays * pixels;
-  f.rays_for_cells = f.rays - least_cost_of_gathers(view, error) - rays_of_search;
+  f.rays_for_cells = f.rays - least_of_pixel(error) * pixels - rays_of_search;
   return f;
 }
 
@@ -179,6 +175,7 @@ PixelSampling sampling_by_paths(const PathForecast& forecast, double error, int 
   s.most = most;
   s.error = error;
   s.evenness = forecast.evenness;
+  s.proportion = forecast.proportion;
   return s;
 }
 

@@ -17,7 +17,9 @@ namespace troffer {
 struct PathForecast {
   double viewing_rays = 0;  // mean per pixel for the asked error
   double rays = 0;          // rays of all kinds, for the whole picture
-  double evenness = 0;      // evenness of a pixel's paths (PixelSampling::evenness)
+  double evenness = 0;      // of a pixel's paths (PixelSampling::evenness)
+  double proportion = 0;    // PixelSampling::proportion
+  double typical = 0;       // usual luminance of the picture (allowed_error.h)
   // Budget for making cells, in rays: `rays` less the least that a picture by cells needs besides.
   // Negative: paths cost less even if cells are free.
   double rays_for_cells = 0;
@@ -28,9 +30,6 @@ struct PathForecast {
 // paths: the integrator whose viewing rays are tested.
 PathForecast forecast_paths(const Integrator& paths, const PictureView& view, double error,
                             int most, uint64_t seed, Counters& counters);
-// Returns the least cost of a picture by gathers from cells, in rays, without making the cells.
-double least_cost_of_gathers(const PictureView& view, double error);
-
 // Returns how the pixels of a picture by paths are to be sampled.
 PixelSampling sampling_by_paths(const PathForecast& forecast, double error, int most);
 

@@ -2,7 +2,8 @@
 // picture's integrator at one of several effort divisors, or by its cheaper integrator
 // (Integrator::cheaper). All have the same mean. A few test rays of each measure the variance of a
 // ray and its cost; the choice has the least product of both, which is the cost of a given error.
-// Test rays enter no result, so the choice leaves the mean of every pixel unbiased.
+// The first rays need no test: the first pass has measured them. Test rays enter no result, so the
+// choice leaves the mean of every pixel unbiased.
 #pragma once
 
 #include <array>
@@ -18,25 +19,26 @@ struct FurtherWay {
   bool is_cheaper = false;      // by Integrator::cheaper
   bool is_like_first = false;   // as carefully as the first rays of a pixel
 };
+// Ways in the order in which they are tested: cheap tests first.
 constexpr std::array<FurtherWay, 5> further_ways{
-    {{1, false, true}, {1}, {4}, {16}, {.is_cheaper = true}}};
+    {{1, false, true}, {.is_cheaper = true}, {16}, {4}, {1}}};
 
-// Test rays of one tile.
+// Pixels of a tile whose further rays are tested, and the first test rays of each.
 constexpr size_t test_pixels = 4;
 constexpr uint32_t test_rays_of_pixel = 8;
 
 struct FurtherChoice {
   FurtherWay way;
-  bool is_tested = false;
-  double rays = 0;   // if tested: further rays of a pixel of the tile
+  double rays = 0;   // further rays of a pixel of the tile
   double times = 1;  // the same over the number that was planned for the test pixels
+  double cost = 0;   // of the further rays of a pixel (costs.h)
 };
 
-// Luminances of the test rays of one way, pixel by pixel, and their cost (costs.h).
+// Luminances of the test rays of one way, for each test pixel, and the cost of a ray (costs.h).
 struct TestedWay {
   FurtherWay way;
-  std::vector<double> luminances;
-  double cost = 0;
+  double cost_of_ray = 0;
+  std::array<std::vector<double>, test_pixels> luminances;
 };
 
 // A test pixel, as the first pass left it.
@@ -48,12 +50,12 @@ struct TestPixel {
   double rays = 4;     // first rays
 };
 
-// Returns the way of least cost for a given error. The first of `tested` is like the first rays of
-// a pixel. Other ways whose test rays bring less than half the light that the first rays have seen
-// are out: the rest may come in rays so rare and bright that no test shows their variance, such as
-// samples of a lamp behind a pinhole. The variance of first rays is the mean of the plan and the
-// test; no other way is taken to have less. most_even: as in samples_for() (sample_spread.h).
-FurtherChoice choose_further_way(std::span<const TestPixel> pixels,
+// Returns the way of least cost for a given error. Rays like the first ones take `cost_of_first`
+// each and vary as planned; no other way is taken to vary less. Ways whose test rays bring less
+// than half the light that the first rays have seen are out: the rest may come in rays so rare and
+// bright that no test shows their variance, such as samples of a lamp behind a pinhole. most_even:
+// as in samples_for() (sample_spread.h).
+FurtherChoice choose_further_way(std::span<const TestPixel> pixels, double cost_of_first,
                                  std::span<const TestedWay> tested, double most_even);
 
 }  // namespace troffer

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "render/edge_map.h"
+#include "transport/allowed_error.h"
 
 namespace troffer {
 
@@ -33,13 +34,14 @@ FurtherRays::FurtherRays(const PreparedScene& scene, const ViewingCamera& camera
   if (sampling.is_by_noise()) {
     options_.error = float(sampling.error);
     options_.evenness = sampling.evenness;
+    options_.proportion = sampling.proportion;
     options_.is_everywhere = options_.is_noise = true;
   }
   steps_.further = uint32_t(passes_of(most_.in_pixel - first_spp_));
   if (has_surrogates_) {
     options_.error = float(options.error);
     options_.is_everywhere = true;
-    options_.most_even = 6;
+    options_.most_even = float(most_even_samples);
     if (options.indirect == Indirect::none)
       options_.least_with_surrogates = options.method.row().refinement * options.spp;
     steps_.surrogates = 1;

@@ -352,6 +352,8 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_surrogates, i
   if (!options.is_noise)
     spread.clutter = variance_amid_clutter(v, x, y, s.slope_variance, sqr(allowed), of);
   double wanted = samples_for(spread, allowed, double(options.most_even), options.evenness);
+  if (options.is_noise && options.proportion > 0)
+    wanted = options.proportion * share_of_samples(wanted, options.evenness);
   // A slope leaves a variance of n^-3 with n stratified samples.
   if (!options.is_noise) wanted = std::max(wanted, std::cbrt(s.slope_variance / sqr(allowed)));
   if (has_surrogates) wanted = std::max(wanted, double(options.least_with_surrogates));

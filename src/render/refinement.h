@@ -34,7 +34,8 @@ struct RefinementOptions {
   bool is_everywhere = false;
   // Neighbours vary by noise, much the same in all of them, so their mean variance counts.
   bool is_noise = false;
-  double evenness = 0;  // convergence of that noise (PixelSampling)
+  double evenness = 0;    // convergence of that noise (PixelSampling)
+  double proportion = 0;  // PixelSampling::proportion
   // Above most_even² rays, the count is proportional to the pixel's standard deviation instead of
   // its variance. This minimizes the picture's error for a given number of rays. 0: never.
   float most_even = 0;

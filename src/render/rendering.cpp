@@ -201,6 +201,7 @@ bool Rendering::do_step(uint32_t number, size_t t, size_t slot, const Act& act) 
   }
   TileWork& w = work_[slot];
   tracer_.begin(w);
+  w.before = book_.state(t).counters;
   book_.begin(t, slot, [&](std::vector<uint8_t>& out) { archive_.save_tile(t, out); });
   if (!act(number, plan_.tiles[t], w)) {
     progress_.was_stopped = true;

@@ -15,6 +15,7 @@ namespace troffer {
 namespace {
 
 constexpr size_t rays_at_a_time = 1024;
+constexpr double cost_of_cheaper = 8;  // a ray of Integrator::cheaper(), before any is tested
 
 }  // namespace
 
@@ -111,25 +112,21 @@ void TileTracer::further_pass(const PixelRect& tile, int first, TileWork& w) {
 }
 
 // Returns pixels that stand for the further rays of a tile: each for an equal number of them. Empty
-// if the tile wants too few for a test to repay.
-std::vector<Pixel2> TileTracer::pixels_to_test(const PixelRect& tile) const {
-  // With at least this many, the tests take an eighth of the tile's further rays or less.
-  constexpr double least = 8 * test_pixels * test_rays_of_pixel * further_ways.size();
+// if the tile wants none.
+std::vector<Pixel2> TileTracer::pixels_to_test(const PixelRect& tile, double wanted) const {
   std::vector<Pixel2> pixels;
-  const auto wanted = [&](const Pixel2& p) {
-    return double(further_.at(p.x, p.y).samples) - further_.first_spp();
-  };
-  double sum = 0;
-  for (const Pixel2& p : pixels_in_order(tile)) sum += wanted(p);
-  if (sum < least) return pixels;
   double so_far = 0;
   for (const Pixel2& p : pixels_in_order(tile)) {
-    so_far += wanted(p);
+    so_far += further_rays_planned(p);
     while (pixels.size() < test_pixels &&
-           so_far >= (double(pixels.size()) + 0.5) / test_pixels * sum)
+           so_far >= (double(pixels.size()) + 0.5) / test_pixels * wanted)
       pixels.push_back(p);
   }
   return pixels;
+}
+
+double TileTracer::further_rays_planned(const Pixel2& p) const {
+  return double(further_.at(p.x, p.y).samples) - further_.first_spp();
 }
 
 TestPixel TileTracer::test_pixel(const Pixel2& p, const TileWork& w) const {
@@ -138,47 +135,77 @@ TestPixel TileTracer::test_pixel(const Pixel2& p, const TileWork& w) const {
   return {has_known ? e.rest : e.luminance,
           allowed_error(options_.error, e.luminance,
                         std::max(double(w.rays.request.typical_luminance), 1e-30)),
-          double(further_.at(p.x, p.y).samples) - further_.first_spp(), double(e.samples)};
+          further_rays_planned(p), double(e.samples)};
 }
 
-// Tests all ways at a few pixels of a tile that wants many further rays.
-FurtherChoice TileTracer::choose_way(const PixelRect& tile, TileWork& w) {
-  if (!further_.has_surrogates()) return {};
-  const std::vector<Pixel2> pixels = pixels_to_test(tile);
-  if (pixels.empty()) return {further_ways.front()};
+// Traces test rays of one way: `count` of each pixel, from number `first` on.
+void TileTracer::test(const std::vector<Pixel2>& pixels, uint32_t first, uint32_t count,
+                      TestedWay& tested, TileWork& w) {
   const uint64_t seed = hash_of(options_.seed, stream::further_test);
-  std::vector<TestPixel> before;
-  for (const Pixel2& p : pixels) before.push_back(test_pixel(p, w));
-  std::vector<TestedWay> tested;
-  for (const FurtherWay& way : further_ways) {
-    if (way.is_cheaper && integrator_.cheaper() == nullptr) continue;
-    w.rays.clear();
-    w.pixels.clear();
-    for (const Pixel2& p : pixels) {
-      add_viewing_rays(camera_, p, uint32_t(further_.first_spp()), test_rays_of_pixel, seed,
-                       w.rays);
-      w.pixels.resize(w.rays.size(), p);
-    }
-    w.rays.request.effort_divisor = way.effort_divisor;
-    const double cost = cost_of(w.counters);
-    compute(way, w);
-    TestedWay& t = tested.emplace_back(TestedWay{way, {}, cost_of(w.counters) - cost});
-    for (size_t i = 0; i < w.rays.size(); ++i) {
-      const Rgb all = w.radiance.direct[i] + w.radiance.indirect[i];
-      double value = is_finite(all) ? double(luminance(all)) : 0;
-      if (further_.at(w.pixels[i].x, w.pixels[i].y).surrogates > 0)
-        value -= double(luminance(w.radiance.known[i].direct + w.radiance.known[i].indirect));
-      t.luminances.push_back(value);
-    }
+  w.rays.clear();
+  w.pixels.clear();
+  for (const Pixel2& p : pixels) {
+    add_viewing_rays(camera_, p, uint32_t(further_.first_spp()) + first, count, seed, w.rays);
+    w.pixels.resize(w.rays.size(), p);
+  }
+  w.rays.request.effort_divisor = tested.way.effort_divisor;
+  const double before = cost_of(w.counters), rays = double(first) * double(pixels.size());
+  compute(tested.way, w);
+  w.rays.request.effort_divisor = 1;
+  tested.cost_of_ray =
+      (tested.cost_of_ray * rays + cost_of(w.counters) - before) / (rays + double(w.rays.size()));
+  for (size_t i = 0; i < w.rays.size(); ++i) {
+    const Rgb all = w.radiance.direct[i] + w.radiance.indirect[i];
+    double value = is_finite(all) ? double(luminance(all)) : 0;
+    if (further_.at(w.pixels[i].x, w.pixels[i].y).surrogates > 0)
+      value -= double(luminance(w.radiance.known[i].direct + w.radiance.known[i].indirect));
+    tested.luminances[i / count].push_back(value);
   }
   w.rays.clear();
   w.pixels.clear();
-  w.rays.request.effort_divisor = 1;
-  return choose_further_way(before, tested, further_.most_even());
+}
+
+// Tests ways at a few pixels of a tile, as long as a test costs little beside the least that the
+// tile's further rays may cost. cost_of_first: of a first ray.
+FurtherChoice TileTracer::choose_way(const PixelRect& tile, double cost_of_first, TileWork& w) {
+  constexpr double share = 1.0 / 16;           // of the cost of all further rays, for each test
+  constexpr uint32_t most_rays_of_pixel = 64;  // in a test
+  double wanted = 0;
+  for (const Pixel2& p : pixels_in_order(tile)) wanted += further_rays_planned(p);
+  FurtherChoice best{further_ways.front()};
+  if (!further_.has_surrogates() || !(wanted > 0)) return best;
+  const std::vector<Pixel2> pixels = pixels_to_test(tile, wanted);
+  std::vector<TestPixel> before;
+  double planned = 0;
+  for (const Pixel2& p : pixels) {
+    before.push_back(test_pixel(p, w));
+    planned += before.back().planned / test_pixels;
+  }
+  const double pixels_of_tile = wanted / planned;
+  std::vector<TestedWay> tested;
+  best = choose_further_way(before, cost_of_first, tested, further_.most_even());
+  for (size_t k = 1; k < further_ways.size(); ++k) {
+    const FurtherWay& way = further_ways[k];
+    if (way.is_cheaper && integrator_.cheaper() == nullptr) continue;
+    const double budget = share * best.cost * pixels_of_tile,
+                 expected =
+                     way.is_cheaper ? cost_of_cheaper : cost_of_first / double(way.effort_divisor);
+    if (budget < expected * test_pixels * test_rays_of_pixel) continue;
+    TestedWay& t = tested.emplace_back(TestedWay{way, 0, {}});
+    test(pixels, 0, test_rays_of_pixel, t, w);
+    const auto rays =
+        uint32_t(std::min(budget / (t.cost_of_ray * test_pixels), double(most_rays_of_pixel)));
+    if (rays > 2 * test_rays_of_pixel)
+      test(pixels, test_rays_of_pixel, rays - test_rays_of_pixel, t, w);
+    best = choose_further_way(before, cost_of_first, tested, further_.most_even());
+  }
+  return best;
 }
 
 bool TileTracer::further_rays(const PixelRect& tile, TileWork& w) {
-  const FurtherChoice choice = choose_way(tile, w);
+  const double cost_of_first = (cost_of(w.before) - double(w.before.surrogates)) /
+                               std::max(double(w.before.viewing_rays), 1.0);
+  const FurtherChoice choice = choose_way(tile, cost_of_first, w);
   const auto send = [&] {
     trace(choice.way, w);
     w.rays.clear();
@@ -190,7 +217,7 @@ bool TileTracer::further_rays(const PixelRect& tile, TileWork& w) {
   const auto wanted = [&](const Pixel2& p) {
     constexpr double most = 1 << 16;
     const double first = further_.first_spp(), own = further_.at(p.x, p.y).samples - first,
-                 rays = choice.is_tested ? 0.5 * (own * choice.times + choice.rays) : own;
+                 rays = choice.way.is_like_first ? own : 0.5 * (own * choice.times + choice.rays);
     return uint32_t(std::min(first + std::ceil(rays), most));
   };
   std::stable_sort(pixels.begin(), pixels.end(), [&](const Pixel2& a, const Pixel2& b) {

@@ -23,7 +23,8 @@ struct TileWork {
   std::vector<Pixel2> pixels;                           // per ray
   std::unique_ptr<IntegratorScratch> scratch, cheaper;  // cheaper: of Integrator::cheaper()
   RadianceBatch known;                                  // surrogate samples beside `radiance`
-  Counters counters;                                    // of the current tile
+  Counters before;                                      // work of the current tile in earlier steps
+  Counters counters;                                    // and in this step
 };
 
 // Returns the name of ray i of the TileWork at `work`, for messages of failed checks.
@@ -61,9 +62,12 @@ class TileTracer {
   void number_like_first(ViewingRays& rays) const;
   void compute(const FurtherWay& way, TileWork& w);
   void trace(const FurtherWay& way, TileWork& w);
-  std::vector<Pixel2> pixels_to_test(const PixelRect& tile) const;
+  double further_rays_planned(const Pixel2& p) const;
+  std::vector<Pixel2> pixels_to_test(const PixelRect& tile, double wanted) const;
   TestPixel test_pixel(const Pixel2& p, const TileWork& w) const;
-  FurtherChoice choose_way(const PixelRect& tile, TileWork& w);
+  void test(const std::vector<Pixel2>& pixels, uint32_t first, uint32_t count, TestedWay& tested,
+            TileWork& w);
+  FurtherChoice choose_way(const PixelRect& tile, double cost_of_first, TileWork& w);
   Rgb edge_correction(const TileWork& w, size_t ray) const;
 
   const ViewingCamera& camera_;

@@ -102,7 +102,8 @@ class MeshCutter {
 // Builds the mirror image of a scene, one kind of content after the other.
 class ImageMaker {
  public:
-  ImageMaker(const Scene& scene, const FlatMirror& mirror) : scene_(scene), mirror_(mirror) {
+  ImageMaker(const Scene& scene, const FlatMirror& mirror, const std::vector<bool>& is_left_out)
+      : scene_(scene), mirror_(mirror), is_left_out_(is_left_out) {
     out_.scene.file = scene.file;
     out_.scene.origin = scene.origin;
     out_.scene.webs = scene.webs;
@@ -140,6 +141,7 @@ class ImageMaker {
 
   const Scene& scene_;
   const FlatMirror& mirror_;
+  const std::vector<bool>& is_left_out_;
   MirrorImage out_;
   std::map<uint32_t, int32_t> lights_;  // scene light with a surface -> image light, or no_light
 };
@@ -296,7 +298,7 @@ bool ImageMaker::add_disks() {
 void ImageMaker::add_lights_without_surface() {
   for (uint32_t l = 0; l < scene_.lights.size(); ++l) {
     const Light& e = scene_.lights[l];
-    if (has_surface(e.kind)) continue;
+    if (has_surface(e.kind) || (!is_left_out_.empty() && is_left_out_[l])) continue;
     const bool is_placed = e.kind == LightKind::point || e.kind == LightKind::spot;
     if (is_placed && mirror_.above(e.position) <= mirror_.tolerance) continue;
     Light image = e;
@@ -370,8 +372,9 @@ std::pair<float, float> FlatMirror::heights(const Box& box) const {
   return {least, most};
 }
 
-std::optional<MirrorImage> mirror_image_of(const Scene& scene, const FlatMirror& mirror) {
-  return ImageMaker(scene, mirror).run();
+std::optional<MirrorImage> mirror_image_of(const Scene& scene, const FlatMirror& mirror,
+                                           const std::vector<bool>& is_left_out) {
+  return ImageMaker(scene, mirror, is_left_out).run();
 }
 
 }  // namespace troffer

@@ -39,8 +39,10 @@ struct MirrorImage {
 // lies behind the plane and emits. An opaque wall with a pane for the mirror
 // (Material::is_mirror_pane) divides them, and more walls around the front keep other light out.
 //
-// A light with any part behind the plane is left out. Returns nothing if a sphere or disk crosses
-// the plane, since these cannot be cut.
-std::optional<MirrorImage> mirror_image_of(const Scene& scene, const FlatMirror& mirror);
+// A light with any part behind the plane is left out, and so are lights at infinity that
+// `is_left_out` names (by index; empty: none). Returns nothing if a sphere or disk crosses the
+// plane, since these cannot be cut.
+std::optional<MirrorImage> mirror_image_of(const Scene& scene, const FlatMirror& mirror,
+                                           const std::vector<bool>& is_left_out = {});
 
 }  // namespace troffer

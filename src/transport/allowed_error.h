@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <vector>
 
@@ -25,6 +26,25 @@ inline double usual_luminance(std::vector<double> values) {
 inline double allowed_error(double error, double luminance, double typical) {
   constexpr double white = 4;  // times the typical luminance
   return error * (typical > 0 ? std::clamp(luminance, typical, white * typical) : luminance);
+}
+
+// Above the square of this, the number of a pixel's further samples is in proportion to the standard
+// deviation instead of the variance, where every pixel has its own limit of error: a few very noisy
+// pixels do not repay the samples that they would need.
+constexpr double most_even_samples = 6;
+
+// Allocation of samples. A pixel alone takes `wanted` samples to reach its allowed error; the
+// variance of n samples falls as n^-b with b = 1 + evenness. A picture reaches the allowed error in
+// the mean square with the fewest samples if each pixel gets p wanted^(b / (1 + b)) of them, by the
+// method of Lagrange: in proportion to the standard deviation for b = 1.
+inline double share_of_samples(double wanted, double evenness) {
+  return std::pow(wanted, (1 + evenness) / (2 + evenness));
+}
+// Returns the p of a picture with these numbers: p^b is the mean of wanted^(b / (1 + b)).
+inline double proportion_of_samples(const std::vector<double>& wanted, double evenness) {
+  double sum = 0;
+  for (const double w : wanted) sum += share_of_samples(w, evenness);
+  return wanted.empty() ? 0 : std::pow(sum / double(wanted.size()), 1 / (1 + evenness));
 }
 
 }  // namespace troffer

@@ -24,6 +24,7 @@ struct PixelSampling {
   // Convergence of stratified samples: the mean of n viewing rays of a pixel has the variance of
   // about n^(1 + evenness) independent ones.
   double evenness = 0;
+  double proportion = 0;  // of the picture (allowed_error.h); 0: each pixel reaches its own error
   bool is_by_noise() const { return most > 0; }
 };
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "base/merge_polygons.h"
 #include "base/random.h"
 #include "base/streams.h"
+#include "light/light.h"
 #include "transport/light_tree_direct.h"
 
 namespace troffer {
@@ -22,6 +24,11 @@ constexpr float least_reflectance = 0.2f;
 constexpr float least_area_of_scene = 1e-4f;  // area of a mirror / squared diagonal of the scene
 constexpr float least_share = 1e-3f;          // flux of a mirror / flux of the strongest one
 
+// Mean solid angle from which a light at infinity counts as broad. Of random rays from a matte
+// surface, more than one in a hundred meets it.
+constexpr double broad = 0.05;  // sr
+constexpr uint32_t samples_of_light = 1024;
+
 struct Candidate {
   FlatMirror mirror;
   std::vector<uint32_t> triangles;
@@ -29,6 +36,34 @@ struct Candidate {
   float area = 0;
   float light = 0;  // reflected flux
 };
+
+// Returns the solid angle of the uniform light whose samples have the same mean density, sr: the
+// squared integral of the radiance over the integral of its square.
+double mean_solid_angle(const PreparedScene& scene, const LightPrimitive& p) {
+  const Vec3 middle = bounds(scene.scene).centre();
+  double density = 0;
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < samples_of_light; ++i) {
+    const SobolGroup numbers(hash_of(stream::mirror_candidates, p.light), 1, i);
+    LightSample s;
+    if (!sample(scene.scene, p, middle, numbers.get2(0), s) || !(s.pdf_solid_angle > 0)) continue;
+    density += double(s.pdf_solid_angle);
+    ++n;
+  }
+  return n > 0 ? n / density : 0;
+}
+
+// Returns, per light, whether it is a broad light at infinity, like a sky. Random rays meet those
+// often, by way of mirrors, too. Images would cost proofs and rays for each mirror.
+std::vector<bool> broad_lights(const PreparedScene& scene) {
+  std::vector<bool> is_broad(scene.scene.lights.size(), false);
+  for (size_t i = 0; i < scene.primitives.size(); ++i) {
+    const LightPrimitive& p = scene.primitives[i];
+    if (p.is_infinite() && !is_delta(scene.scene.lights[p.light].kind))
+      is_broad[p.light] = mean_solid_angle(scene, p) > broad;
+  }
+  return is_broad;
+}
 
 // Returns the luminance of the reflectance at normal incidence; 0 if the material cannot have an
 // image.
@@ -176,10 +211,13 @@ std::vector<Candidate> best_of(const PreparedScene& scene) {
 std::shared_ptr<const MirrorImages> MirrorImages::make(const PreparedScene& scene) {
   auto images = std::make_shared<MirrorImages>();
   images->of_triangle_.resize(scene.scene.meshes.size());
-  if (scene.primitives.size() == 0) return nullptr;
+  const std::vector<bool> is_broad = broad_lights(scene);
+  const auto is_light = [&](uint32_t p) { return !is_broad[scene.primitives[p].light]; };
+  const auto primitives = std::views::iota(0u, uint32_t(scene.primitives.size()));
+  if (std::none_of(primitives.begin(), primitives.end(), is_light)) return nullptr;
   size_t triangles = 0;
   for (Candidate& c : best_of(scene)) {
-    std::optional<MirrorImage> made = mirror_image_of(scene.scene, c.mirror);
+    std::optional<MirrorImage> made = mirror_image_of(scene.scene, c.mirror, is_broad);
     if (!made || made->lights.empty()) continue;
     triangles += triangle_count(made->scene);
     if (triangles > most_triangles) break;

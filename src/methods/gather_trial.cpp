@@ -1,0 +1,128 @@
+#include "methods/gather_trial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/random.h"
+#include "base/streams.h"
+#include "base/units.h"
+#include "transport/allowed_error.h"
+#include "transport/costs.h"
+#include "transport/purposes.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr int windows_across = 3, windows_down = 2;
+// A trial repays if it looks at no more than this share of the picture.
+constexpr double most_share = 0.125;
+
+// The window is one tile of the gathers, so that its fits have their usual neighbours.
+PixelWindow window_of(const PixelWindow& image, int i) {
+  constexpr int side = GatherRecords::tile_side;
+  const auto first = [](int n, int k, int of) {
+    return std::min((2 * k + 1) * n / (2 * of), n - side) / side * side;
+  };
+  const int x = first(image.width(), i % windows_across, windows_across),
+            y = first(image.height(), i / windows_across, windows_down);
+  return {x, y, x + side, y + side};
+}
+
+// Returns the first viewing rays of all pixels of a window.
+ViewingRays rays_of(const PictureView& view, const GatherTrialInput& in) {
+  ViewingRays rays;
+  rays.request.is_picture = true;
+  rays.request.typical_luminance = float(in.cached.typical);
+  for (int y = view.window.y0; y < view.window.y1; ++y)
+    for (int x = view.window.x0; x < view.window.x1; ++x) {
+      const uint64_t stream =
+          hash_of(in.options.seed, uint64_t(x), uint64_t(y), stream::gather_trial);
+      for (int k = 0; k < in.viewing_rays; ++k) {
+        const Vec2 place = SobolGroup(stream, purpose_camera, uint32_t(k)).get2(0);
+        rays.rays.push_back(view.ray(float(x) + place.x, float(y) + place.y));
+        rays.streams.push_back(stream);
+        rays.samples.push_back(uint32_t(k));
+        rays.pixels.push_back({x, y});
+        rays.places.push_back(place);
+      }
+    }
+  return rays;
+}
+
+// Appends, for each pixel, the number of viewing rays that it needs for the error.
+void add_wanted(const RadianceBatch& seen, const GatherTrialInput& in,
+                std::vector<double>& wanted) {
+  const auto n = size_t(in.viewing_rays);
+  for (size_t first = 0; first + n <= seen.direct.size(); first += n) {
+    double sum = 0, squares = 0;
+    for (size_t i = first; i < first + n; ++i) {
+      const Rgb all = seen.direct[i] + seen.indirect[i];
+      const double v = is_finite(all) ? double(luminance(all)) : 0;
+      sum += v;
+      squares += sqr(v);
+    }
+    const double mean = sum / double(n), of_pixel = squares - sum * mean,
+                 variance = std::max(of_pixel, 0.0) / double(std::max<size_t>(n - 1, 1));
+    wanted.push_back(variance / sqr(allowed_error(in.error, mean, in.cached.typical)));
+  }
+}
+
+// Returns the mean cost of a pixel's further viewing rays: like first ones, which cost `of_first`
+// each, or as cached paths, which vary more.
+double cost_of_further(const std::vector<double>& wanted, double of_first,
+                       const GatherTrialInput& in) {
+  const double first = in.viewing_rays,
+               pixels = double(in.view.image.width()) * in.view.image.height(),
+               of_cached = in.cached.rays / pixels / in.cached.viewing_rays;
+  double sum = 0;
+  for (const double w : wanted) {
+    if (w <= first) continue;
+    const double rays = w > sqr(most_even_samples) ? most_even_samples * std::sqrt(w) : w;
+    sum += std::min((rays - first) * of_first, std::max(rays, in.cached.viewing_rays) * of_cached);
+  }
+  return sum / double(wanted.size());
+}
+
+}  // namespace
+
+GatherTrial try_gathers(const GatherTrialInput& in, const StopFlag& stop, Counters& counters) {
+  constexpr int side = GatherRecords::tile_side, windows = windows_across * windows_down;
+  GatherOptions options = in.options;
+  options.is_trial = true;
+  options.group = nullptr;  // every process makes the same trial
+  const PixelWindow& image = in.view.image;
+  const double pixels = double(image.width()) * image.height(), looked_at = windows * side * side;
+  GatherTrial trial;
+  if (looked_at > most_share * pixels || image.width() < side || image.height() < side)
+    return trial;
+  double of_gathers = 0, of_first = 0;
+  std::vector<double> wanted;
+  for (int i = 0; i < windows; ++i) {
+    PictureView view = in.view;
+    view.window = window_of(image, i);
+    Counters gathering, first;
+    std::shared_ptr<const GatherRecords> records =
+        GatherRecords::make(in.cells, view, options, nullptr, stop, gathering);
+    if (!records) return trial;
+    in.reflected.set_records(std::move(records));
+    const ViewingRays rays = rays_of(view, in);
+    const std::unique_ptr<IntegratorScratch> scratch = in.gathers.make_scratch();
+    RadianceBatch out;
+    out.reset(rays.size());
+    in.gathers.radiance(rays, *scratch, out, first);
+    of_gathers += cost_of(gathering);
+    of_first += cost_of(first);
+    counters += gathering;
+    counters += first;
+    add_wanted(out, in, wanted);
+  }
+  trial.of_gathers = of_gathers / looked_at * pixels;
+  trial.of_first = of_first / looked_at * pixels;
+  trial.cost = trial.of_gathers + trial.of_first +
+               pixels * cost_of_further(wanted, of_first / looked_at / in.viewing_rays, in);
+  return trial;
+}
+
+}  // namespace troffer

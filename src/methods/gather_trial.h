@@ -1,0 +1,34 @@
+// Measures what a picture by gathers costs, on a few windows of it, before the whole picture is
+// gathered. The default method compares it with cached paths (certified_method.cpp).
+#pragma once
+
+#include <memory>
+
+#include "gather/cells_indirect.h"
+#include "methods/path_forecast.h"
+
+namespace troffer {
+
+struct GatherTrial {
+  double cost = 0;        // of the whole picture, in rays (costs.h)
+  double of_gathers = 0;  // the part that the gathers take
+  double of_first = 0;    // and that of the first viewing rays
+};
+
+struct GatherTrialInput {
+  const Integrator& gathers;  // reads the records of `reflected`
+  CellsIndirect& reflected;   // its records are replaced
+  const Cells& cells;
+  const PictureView& view;
+  const GatherOptions& options;
+  int viewing_rays = 1;        // first ones of each pixel
+  double error = 0.01;         // asked error of a pixel
+  const PathForecast& cached;  // of paths that end at the cells
+};
+
+// Gathers in a few windows, traces their first viewing rays, and estimates from these what the
+// further ones will cost. Returns a cost of 0 if the picture is so small that a trial would not
+// repay, and after a stop. Adds its work to `counters`.
+GatherTrial try_gathers(const GatherTrialInput& in, const StopFlag& stop, Counters& counters);
+
+}  // namespace troffer
