@@ -66,8 +66,8 @@ FurtherChoice choose_further_way(std::span<const TestPixel> pixels, double cost_
                  variance = std::max(seen.variance + rare, of_first),
                  work = variance * t.cost_of_ray;
     const double noise = std::hypot(error_of_expected, std::sqrt(seen.variance / seen.rays));
-    const bool may_miss_light = 2 * seen.mean < expected - error_of_expected ||
-                                missing > least_missing * expected + 2 * noise;
+    const bool may_miss_light =
+        2 * seen.mean < expected || missing > least_missing * expected + 2 * noise;
     if (may_miss_light || work >= least) continue;
     least = work;
     const double rays = samples_for({.chance = variance}, 1, most_even, 0);

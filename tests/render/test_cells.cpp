@@ -89,7 +89,7 @@ TEST_CASE("cells: in a furnace all pixels are equally bright within the asked er
   CHECK(mean_green(image) == doctest::Approx(double(L0)).epsilon(0.001));
   CHECK(std::sqrt(squares / n) < 0.005);
   CAPTURE(off);
-  CHECK(off < 0.12 * n);
+  CHECK(off < 0.2 * n);  // 21 % if errors were normal with a spread of .004
 }
 
 TEST_CASE("cells: with two rooms on one floor the dark one stays dark") {

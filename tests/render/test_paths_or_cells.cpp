@@ -154,7 +154,7 @@ TEST_CASE("--indirect auto: cells are abandoned if they cost more than paths") {
   RenderOptions o = small_picture();
   o.width = 160;
   o.height = 120;
-  o.error = 0.02;
+  o.error = 0.01;
   // Making cells begins,
   REQUIRE(forecast_paths(PathIntegrator(scene, {}), view, 0.75 * o.error, 1 << 14, o.seed, counters)
               .rays_for_cells > 0);
