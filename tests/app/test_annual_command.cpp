@@ -45,10 +45,11 @@ struct AnnualRun {
 
   explicit AnnualRun(const HbjsonRoom& room) : scene(folder.write("room.hbjson", room.text())) {}
 
-  std::vector<std::string> words(const std::vector<std::string>& more) const {
+  std::vector<std::string> words(const std::vector<std::string>& more,
+                                 const std::string& rays = "128") const {
     std::vector<std::string> w{
         "annual",        scene, "--weather",     weather, "-o", folder.path("year"),
-        "--gather-rays", "128", "--subdivision", "1"};
+        "--gather-rays", rays,  "--subdivision", "1"};
     w.insert(w.end(), more.begin(), more.end());
     return w;
   }
@@ -134,7 +135,7 @@ TEST_CASE("eyes, sunlight and electric light are assessed on request") {
 
 TEST_CASE("an interrupted year leaves no folder") {
   const AnnualRun test(room_with_blinds());
-  Running running(test.folder, test.words({"--gather-rays", "200000"}));
+  Running running(test.folder, test.words({}, "200000"));
   running.let_work(1);
   running.send(SIGINT);
   const Finished f = running.wait();
