@@ -1,5 +1,7 @@
 #include "app/annual_sink.h"
 
+#include <sys/resource.h>
+
 namespace troffer {
 
 namespace {
@@ -15,6 +17,15 @@ void add_to_grid(const HoursOfSensor& hours, AnnualGrid& grid) {
     grid.mean_lx[h] += share * hours.total[h];
     grid.share_300[h] += hours.total[h] >= bright_lx ? 100 * share : 0;
   }
+}
+
+// Allows as many open files as the system does: arrays of all grids, groups and states stay open
+// until the end.
+void allow_open_files() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);  // a failure shows when a file cannot be opened
 }
 
 }  // namespace
@@ -35,6 +46,7 @@ void AnnualSink::take(size_t sensor, const HoursOfSensor& hours) {
 }
 
 void AnnualSink::open(size_t hours) {
+  allow_open_files();
   std::vector<HoneybeeGrid> named;
   for (const AnnualGrid& g : grids_) named.push_back({g.name, g.count});
   std::vector<HoneybeePath> paths;
