@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "annual/blinds.h"
+#include "annual/eye_glare.h"
 #include "annual/sensor_hours.h"
+#include "annual/sensor_states.h"
 #include "base/units.h"
 
 namespace troffer {
@@ -15,13 +18,8 @@ namespace {
 constexpr size_t gather_rays = 1 << 20;
 constexpr size_t least_rays = 16, most_rays = 256;
 constexpr size_t sensors_at_a_time = 64;
-constexpr double share_of_reflected = 0.6;  // of the progress
-
-std::vector<CellHit> hits_of(const std::vector<MeasuringPlace>& places) {
-  std::vector<CellHit> hits;
-  for (const MeasuringPlace& p : places) hits.push_back({p.position, p.normal, p.normal, p.offset});
-  return hits;
-}
+// Parts of the progress; the rest is for hours.
+constexpr double share_of_reflected = 0.6, share_of_blinds = 0.1;
 
 TransportRays rays_of(const AnnualOptions& options, size_t sensors) {
   TransportRays rays;
@@ -33,15 +31,9 @@ TransportRays rays_of(const AnnualOptions& options, size_t sensors) {
   return rays;
 }
 
-// Sums over one sensor, for AnnualResult::relative_error.
-struct ErrorSums {
-  double squares = 0, errors = 0;
-};
-
-// Returns AnnualResult::relative_error_reflected.
-double reflected_error(std::span<const ReflectedReplicate> reflected, size_t sensors,
-                       size_t patches) {
-  double squares = 0, errors = 0;
+// Squares of coefficients and of their errors, for AnnualResult::relative_error_reflected.
+void add_reflected_error(std::span<const ReflectedReplicate> reflected, size_t sensors,
+                         size_t patches, ErrorSums& sums) {
   std::vector<double> values(reflected.size());
   for (size_t s = 0; s < sensors; ++s)
     for (size_t p = 0; p < patches; ++p) {
@@ -50,98 +42,157 @@ double reflected_error(std::span<const ReflectedReplicate> reflected, size_t sen
         values[r] = double(reflected[r].of(s)[p]);
         mean += values[r] / double(values.size());
       }
-      squares += mean * mean;
-      errors += sqr(with_spread(mean, values).error);
+      sums.squares += mean * mean;
+      sums.errors += sqr(with_spread(mean, values).error);
     }
-  return squares > 0 ? std::sqrt(errors / squares) : 0;
 }
 
-HoursOfSensor mean_hours(const SensorHours& hours, ErrorSums& sums) {
-  HoursOfSensor out;
-  out.total.assign(hours.hours, 0);
-  out.sun.assign(hours.hours, 0);
-  out.error.assign(hours.hours, 0);
-  constexpr double n = replicate_count;
-  for (size_t h = 0; h < hours.hours; ++h) {
-    double sum = 0, squares = 0, sun = 0;
-    for (size_t r = 0; r < size_t(replicate_count); ++r) {
-      sum += double(hours.total_of(r)[h]) / n;
-      sun += double(hours.sun_of(r)[h]) / n;
+// One calculation, step by step. Each step returns false once `stop` is set.
+class AnnualCalculation {
+ public:
+  AnnualCalculation(const AnnualRequest& request, const AnnualOptions& options,
+                    const ProgressCallback& progress, const StopFlag& stop, AnnualResult& result)
+      : request_(request),
+        options_(options),
+        progress_(progress),
+        stop_(stop),
+        result_(result),
+        states_(request.paths, request.points) {}
+
+  bool reflect() {
+    ErrorSums sums;
+    for (size_t k = 0; k < states_.size(); ++k) {
+      LitState& state = states_[k];
+      state.reflected = reflected_light(
+          *state.scene, state.hits, request_.year, request_.compass,
+          {rays_of(options_, state.hits.size()), options_.seed, options_.threads},
+          [&](double f) { tell(share_of_reflected * (double(k) + f) / double(states_.size())); },
+          stop_);
+      if (state.reflected.size() < size_t(replicate_count)) return false;
+      for (const ReflectedReplicate& r : state.reflected) {
+        result_.cells = std::max(result_.cells, r.cells);
+        result_.links = std::max(result_.links, r.links);
+        result_.sources = std::max(result_.sources, r.sources);
+      }
+      add_reflected_error(state.reflected, state.hits.size(), result_.skies.coarse.sky.size(),
+                          sums);
     }
-    for (size_t r = 0; r < size_t(replicate_count); ++r) {
-      const double d = double(hours.total_of(r)[h]) - sum;
-      squares += d * d;
-    }
-    const double variance = squares / (n - 1) / n;
-    out.total[h] = float(sum);
-    out.sun[h] = float(sun);
-    out.error[h] = float(std::sqrt(variance));
-    sums.squares += sum * sum;
-    sums.errors += variance;
+    result_.relative_error_reflected = sums.squares > 0 ? std::sqrt(sums.errors / sums.squares) : 0;
+    return true;
   }
-  return out;
-}
+
+  bool operate_blinds() {
+    if (options_.blinds == "open" || !has_several_states(request_.paths)) return true;
+    if (options_.blinds != "lm-83") {
+      result_.schedule =
+          read_state_schedule(options_.blinds, request_.paths, request_.year, result_.skies);
+      return true;
+    }
+    std::vector<SunOfPath> sun(request_.paths.size());
+    for (size_t p = 0; p < sun.size(); ++p) {
+      const size_t first = states_.first_of(p), last = states_.first_of(p + 1) - 1;
+      if (!trace_sun(first, sun[p].open)) return false;
+      if (first == last)
+        sun[p].closed = sun[p].open;
+      else if (!trace_sun(last, sun[p].closed))
+        return false;
+      tell(share_of_reflected + share_of_blinds * double(p + 1) / double(sun.size()));
+    }
+    result_.schedule = lm83_schedule(request_.paths, sun, request_.grids, result_.skies.hours());
+    return true;
+  }
+
+  bool take_hours(const TakeHours& take) {
+    const size_t sensors = request_.points.size();
+    const StateSums sums(states_, result_.schedule);
+    ErrorSums all;
+    for (size_t first = 0; first < sensors; first += sensors_at_a_time) {
+      const size_t count = std::min(sensors_at_a_time, sensors - first);
+      std::vector<HoursOfSensor> means(count);
+      std::vector<ErrorSums> errors(count);
+      parallel_for(count, options_.threads, [&](size_t i) {
+        if (stop_.load()) return;
+        means[i] = hours_of(sums, first + i, errors[i]);
+      });
+      if (stop_.load()) return false;
+      for (size_t i = 0; i < count; ++i) {
+        all.squares += errors[i].squares;
+        all.errors += errors[i].errors;
+        if (take) take(first + i, means[i]);
+      }
+      constexpr double before = share_of_reflected + share_of_blinds;
+      tell(before + (1 - before) * double(first + count) / double(sensors));
+    }
+    result_.relative_error = all.squares > 0 ? std::sqrt(all.errors / all.squares) : 0;
+    return true;
+  }
+
+ private:
+  void tell(double fraction) const {
+    if (progress_) progress_(fraction);
+  }
+  YearOfLight light_of(const LitState& state) const {
+    return {*state.scene,     request_.year,   result_.skies,
+            request_.compass, state.reflected, options_.seed};
+  }
+  bool trace_sun(size_t state, SunOfSensors& out) const {
+    const YearOfLight light = light_of(states_[state]);
+    out.resize(request_.points.size());
+    parallel_for(out.size(), options_.threads, [&](size_t s) {
+      if (!stop_.load()) out[s] = sun_of_sensor(light, s, states_[state].hits[s]);
+    });
+    return !stop_.load();
+  }
+  // Computes all states of a sensor, and sets its figures.
+  HoursOfSensor hours_of(const StateSums& sums, size_t sensor, ErrorSums& errors) {
+    StateSums::Sensor sum = sums.begin();
+    const bool is_eye = sensor >= request_.points.size() - request_.eyes;
+    for (size_t k = 0; k < states_.size(); ++k) {
+      const YearOfLight light = light_of(states_[k]);
+      sum.add(k, sensor_hours(light, sensor, states_[k].hits[sensor]));
+      if (is_eye) sum.add_glare(k, glare_strengths(light, sensor, states_[k].hits[sensor]));
+    }
+    const HoursOfSensor means = sum.means(errors);
+    const std::vector<float> open = sum.mean_open();
+    const auto figures = [&](const HoursOfFigures& hours) {
+      return figures_of(hours, result_.times, request_.year.steps_per_hour, options_.figures);
+    };
+    result_.figures.at(sensor, 0) = figures({means.total, open, means.sun});
+    for (size_t r = 0; r < size_t(replicate_count); ++r)
+      result_.figures.at(sensor, r + 1) = figures(sum.of_replicate(r));
+    return means;
+  }
+
+  const AnnualRequest& request_;
+  const AnnualOptions& options_;
+  const ProgressCallback& progress_;
+  const StopFlag& stop_;
+  AnnualResult& result_;
+  LitStates states_;
+};
 
 }  // namespace
 
-AnnualResult compute_annual(const PreparedScene& scene, const std::vector<MeasuringPlace>& places,
-                            const WeatherYear& year, const Compass& compass,
-                            const AnnualOptions& options, const TakeHours& take,
-                            const ProgressCallback& progress, const StopFlag& stop) {
-  const auto tell = [&](double fraction) {
-    if (progress) progress(fraction);
-  };
-  YearSkies skies =
-      make_year_skies(year, options.subdivision, options.ground_reflectance, options.threads);
-  YearTimes times = make_year_times(year, skies, options.occupancy);
+bool has_several_states(const std::vector<LightPath>& paths) {
+  return std::any_of(paths.begin(), paths.end(),
+                     [](const LightPath& p) { return p.states.size() > 1; });
+}
+
+AnnualResult compute_annual(const AnnualRequest& request, const AnnualOptions& options,
+                            const TakeHours& take, const ProgressCallback& progress,
+                            const StopFlag& stop) {
+  YearSkies skies = make_year_skies(request.year, options.subdivision, options.ground_reflectance,
+                                    options.threads);
+  YearTimes times = make_year_times(request.year, skies, options.occupancy);
+  const size_t hours = skies.hours();
   AnnualResult result{std::move(skies), std::move(times),
-                      FigureTable(places.size(), size_t(replicate_count))};
-  const std::vector<CellHit> hits = hits_of(places);
-  const std::vector<ReflectedReplicate> reflected = reflected_light(
-      scene, hits, year, compass, {rays_of(options, hits.size()), options.seed, options.threads},
-      [&](double f) { tell(share_of_reflected * f); }, stop);
-  if (reflected.size() < size_t(replicate_count)) {
-    result.is_complete = false;
-    return result;
-  }
-  for (const ReflectedReplicate& r : reflected) {
-    result.cells = std::max(result.cells, r.cells);
-    result.links = std::max(result.links, r.links);
-    result.sources = std::max(result.sources, r.sources);
-  }
-  result.relative_error_reflected =
-      reflected_error(reflected, hits.size(), result.skies.coarse.sky.size());
-  const YearOfLight light{scene, year, result.skies, compass, reflected, options.seed};
-  ErrorSums all;
-  for (size_t first = 0; first < hits.size(); first += sensors_at_a_time) {
-    const size_t count = std::min(sensors_at_a_time, hits.size() - first);
-    std::vector<HoursOfSensor> means(count);
-    std::vector<ErrorSums> sums(count);
-    parallel_for(count, options.threads, [&](size_t i) {
-      if (stop.load()) return;
-      const size_t sensor = first + i;
-      const SensorHours hours = sensor_hours(light, sensor, hits[sensor]);
-      means[i] = mean_hours(hours, sums[i]);
-      const auto figures = [&](std::span<const float> total, std::span<const float> sun) {
-        return figures_of(total, sun, result.times, year.steps_per_hour, options.figures);
-      };
-      result.figures.at(sensor, 0) = figures(means[i].total, means[i].sun);
-      for (size_t r = 0; r < size_t(replicate_count); ++r)
-        result.figures.at(sensor, r + 1) = figures(hours.total_of(r), hours.sun_of(r));
-    });
-    if (stop.load()) {
-      result.is_complete = false;
-      return result;
-    }
-    for (size_t i = 0; i < count; ++i) {
-      all.squares += sums[i].squares;
-      all.errors += sums[i].errors;
-      if (take) take(first + i, means[i]);
-    }
-    tell(share_of_reflected +
-         (1 - share_of_reflected) * double(first + count) / double(hits.size()));
-  }
-  result.relative_error = all.squares > 0 ? std::sqrt(all.errors / all.squares) : 0;
+                      StateSchedule(request.paths.size(), hours),
+                      FigureTable(request.points.size(), size_t(replicate_count))};
+  AnnualCalculation calculation(request, options, progress, stop, result);
+  // A table of states is read before any long work, so that mistakes show at once.
+  const bool has_table = options.blinds != "lm-83";
+  result.is_complete = (!has_table || calculation.operate_blinds()) && calculation.reflect() &&
+                       (has_table || calculation.operate_blinds()) && calculation.take_hours(take);
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "annual/annual_plots.h"
+#include "annual/extras_text.h"
 #include "report/html_text.h"
 #include "report/page_style.h"
 #include "report/page_tables.h"
@@ -80,8 +81,12 @@ std::string grid_section(const AnnualReport& r, const AnnualGrid& g) {
       "Values after ± are standard errors.</p>",
       html_name(g.name), g.count);
   h += requirements_table_of(g);
-  h += "<p class=\"sub\">A requirement is undecided if its limit lies within two standard errors. "
-       "sDA is computed without blinds: LEED option 1 also asks for blinds to be operated.</p>";
+  h += "<p class=\"sub\">A requirement is undecided if its limit lies within two standard errors. ";
+  h += has_several_states(r.paths)
+           ? "Blinds are operated for daylight autonomy, UDI, mean illuminance and sDA. ASE, EN "
+             "17037 and LEED option 2 have them open.</p>"
+           : "sDA is computed without blinds: LEED option 1 also asks for blinds to be "
+             "operated.</p>";
   h += figures_table_of(g);
   h += "<div class=\"plots\">";
   for (const SensorFigure f : {SensorFigure::da, SensorFigure::udi_autonomous,
@@ -96,6 +101,27 @@ std::string grid_section(const AnnualReport& r, const AnnualGrid& g) {
   h += "<figure>" + day_hour_map(r, g.share_300, "%", {0, 100}, "Share of sensors from 300 lx on") +
        "<figcaption>Share of the grid with 300 lx or more.</figcaption></figure>";
   return h;
+}
+
+std::string blinds_text(const std::string& blinds) {
+  if (blinds == "lm-83")
+    return "IES LM-83: groups close while more than 2 % of a grid get 1000 lx or more straight "
+           "from the sun";
+  return blinds == "open" ? "always open" : "table " + blinds;
+}
+
+std::string groups_section(const AnnualReport& r) {
+  if (r.paths.size() < 2) return "";
+  HtmlTable table({"Window group", "State", "Occupied hours with daylight"});
+  for (size_t p = 0; p < r.paths.size(); ++p) {
+    if (r.paths[p].name == static_path) continue;
+    const std::vector<double> hours = hours_in_states(r, p);
+    for (size_t s = 0; s < hours.size(); ++s)
+      table.add({s == 0 ? html_name(r.paths[p].name) : "", html_name(r.paths[p].states[s].name),
+                 fmt::format("<span class=\"n\">{:.0f} h</span>", hours[s])});
+  }
+  return "<h2>Window groups</h2><p class=\"sub\">Operation of blinds: " +
+         html_text(blinds_text(r.blinds)) + ".</p>" + table.html();
 }
 
 std::string settings_section(const AnnualReport& r) {
@@ -140,6 +166,8 @@ std::string annual_page(const AnnualReport& r) {
     h += "</ul>";
   }
   for (const AnnualGrid& g : r.grids) h += grid_section(r, g);
+  h += groups_section(r);
+  h += extras_sections(r);
   h += "<h2>Sun</h2><figure>" + sun_paths(r.year, half_width) +
        "<figcaption>Paths of the sun on the 21st of December to June, hours in standard "
        "time.</figcaption></figure>";

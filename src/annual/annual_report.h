@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "annual/annual.h"
+#include "annual/annual_extras.h"
 #include "render/measure.h"
 
 namespace troffer {
@@ -23,7 +24,7 @@ struct AnnualGrid {
 struct AnnualReport {
   std::string title, scene, weather_file, version, command;
   std::vector<std::string> warnings;
-  std::string occupancy;
+  std::string occupancy, blinds;  // as typed
   double da_lx = 300, north_deg = 0;
   int subdivision = 4;
   const WeatherYear& year;
@@ -31,7 +32,12 @@ struct AnnualReport {
   const std::vector<MeasuringPoint>& points;
   const AnnualResult& result;
   std::vector<AnnualGrid> grids;
+  const std::vector<LightPath>& paths;
+  AnnualExtras extras;
 };
+
+// Occupied hours that a path spends in each of its states.
+std::vector<double> hours_in_states(const AnnualReport& report, size_t path);
 
 // Name and unit of a sensor's figure, as columns of tables have them: "da", "%".
 struct FigureColumn {

@@ -15,6 +15,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array columns{
     FigureColumn{SensorFigure::da, "da", "%", "Daylight autonomy"},
+    FigureColumn{SensorFigure::da_open, "da_open", "%", "Daylight autonomy, blinds open"},
     FigureColumn{SensorFigure::cda, "cda", "%", "Continuous daylight autonomy"},
     FigureColumn{SensorFigure::udi_fell_short, "udi_fell_short", "%", "UDI below 100 lx"},
     FigureColumn{SensorFigure::udi_supplementary, "udi_supplementary", "%", "UDI 100 to 300 lx"},
@@ -72,6 +73,47 @@ std::span<const FigureColumn> figure_columns() {
   return columns;
 }
 
+std::vector<double> hours_in_states(const AnnualReport& r, size_t path) {
+  std::vector<double> hours(r.paths[path].states.size(), 0);
+  const std::span<const uint16_t> states = r.result.schedule.of(path);
+  for (size_t h = 0; h < states.size(); ++h)
+    if (r.result.times.is_occupied[h] != 0) hours[states[h]] += 1.0 / r.year.steps_per_hour;
+  return hours;
+}
+
+namespace {
+
+Json point_json(const MeasuringPoint& p) {
+  return {{"x", p.position.x}, {"y", p.position.y}, {"z", p.position.z}};
+}
+
+void add_extras(const AnnualExtras& extras, Json& json) {
+  for (const EyeYear& e : extras.eyes) {
+    Json eye = point_json(e.eye);
+    eye["direction"] = {e.eye.normal.x, e.eye.normal.y, e.eye.normal.z};
+    for (size_t k = 0; k < glare_limits.size(); ++k)
+      eye["share_of_occupied_hours"][fmt::format("dgp_above_{:.2f}", glare_limits[k].dgp)] =
+          e.shares[k];
+    eye["protection_from_glare"] = glare_level(e);
+    json["eyes"].push_back(std::move(eye));
+  }
+  for (const SunlitPoint& p : extras.sunlight) {
+    Json point = point_json(p.point);
+    point["hours"] = p.hours;
+    point["level"] = sunlight_level(p.hours);
+    json["sunlight"].push_back(std::move(point));
+  }
+  for (const DimmedUse& u : extras.electric)
+    json["electric"].push_back({{"group", u.name},
+                                {"sensors", u.sensors},
+                                {"mean_lx", u.mean_lx},
+                                {"target_lx", extras.electric_target_lx},
+                                {"occupied_hours", u.occupied_hours},
+                                {"full_load_hours", u.full_load_hours}});
+}
+
+}  // namespace
+
 std::string annual_json(const AnnualReport& r) {
   const AnnualResult& result = r.result;
   Json json{{"program", "troffer"},
@@ -91,6 +133,7 @@ std::string annual_json(const AnnualReport& r) {
   json["settings"] = {{"occupancy", r.occupancy},
                       {"occupied_steps", result.times.occupied},
                       {"daylight_steps", result.times.daylight},
+                      {"blinds", r.blinds},
                       {"da_lx", r.da_lx},
                       {"north_deg", r.north_deg},
                       {"subdivision", r.subdivision}};
@@ -100,8 +143,19 @@ std::string annual_json(const AnnualReport& r) {
                          {"sources", result.sources},
                          {"relative_error_of_hours", result.relative_error},
                          {"relative_error_of_reflected", result.relative_error_reflected}};
+  json["window_groups"] = Json::array();
+  for (size_t p = 0; p < r.paths.size(); ++p) {
+    if (r.paths[p].name == static_path) continue;
+    Json group{{"name", r.paths[p].name}, {"states", Json::array()}};
+    const std::vector<double> hours = hours_in_states(r, p);
+    for (size_t s = 0; s < hours.size(); ++s)
+      group["states"].push_back(
+          {{"name", r.paths[p].states[s].name}, {"occupied_hours_with_daylight", hours[s]}});
+    json["window_groups"].push_back(std::move(group));
+  }
   json["grids"] = Json::array();
   for (const AnnualGrid& g : r.grids) json["grids"].push_back(grid_json(g));
+  add_extras(r.extras, json);
   return dump(json);
 }
 

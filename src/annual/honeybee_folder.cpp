@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -14,7 +15,8 @@ namespace {
 
 using HoneybeeJson = nlohmann::ordered_json;
 
-constexpr const char* light_path = "__static_apertures__";  // [1]
+constexpr const char* parts[] = {"total", "direct"};
+constexpr const char* errors = "/standard_error";  // our own addition to the layout
 
 // Letters, digits, '_', '-' and '.'; others become '_'.
 std::string identifier(const std::string& name) {
@@ -27,16 +29,34 @@ std::string identifier(const std::string& name) {
   return id.empty() || id[0] == '.' ? "grid" + id : id;
 }
 
+void make_folder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw EnvironmentError("cannot make the folder " + path);
+}
+
 std::string hour_text(double hour) {
   return fmt::format("{:.10g}", hour);
 }
 
 }  // namespace
 
+// Files of one path and state.
+struct StateFiles {
+  std::unique_ptr<AtomicFile> total, direct;
+};
+
+struct HoneybeeFolder::PathNames {
+  std::string name, id;
+  std::vector<std::string> states;  // names of folders [1]
+};
+
 struct HoneybeeFolder::GridFiles {
   std::string name, id;
   size_t sensors = 0;
-  std::unique_ptr<AtomicFile> total, direct;
+  std::vector<std::vector<StateFiles>> files;  // path by path
+  std::vector<bool> has_light;                 // per path
+  std::unique_ptr<AtomicFile> error;
 };
 
 std::string npy_header(size_t rows, size_t columns) {
@@ -52,26 +72,50 @@ std::string npy_header(size_t rows, size_t columns) {
 }
 
 HoneybeeFolder::HoneybeeFolder(std::string path, const std::vector<HoneybeeGrid>& grids,
-                               size_t hours)
-    : path_(std::move(path)) {
-  const std::string arrays = path_ + "/" + light_path + "/default/";
-  for (const char* part : {"total", "direct"}) {
-    std::error_code error;
-    std::filesystem::create_directories(arrays + part, error);
-    if (error) throw EnvironmentError("cannot make the folder " + arrays + part);
+                               const std::vector<HoneybeePath>& paths, size_t hours)
+    : path_(std::move(path)), hours_(hours) {
+  const auto unique_id = [](const std::string& name, std::set<std::string>& used) {
+    std::string id = identifier(name);
+    for (int n = 2; !used.insert(id).second; ++n) id = fmt::format("{}_{}", identifier(name), n);
+    return id;
+  };
+  std::set<std::string> used_paths, used_grids;
+  for (const HoneybeePath& p : paths) {
+    PathNames& names = paths_.emplace_back();
+    names.name = p.name;
+    names.id = unique_id(p.name, used_paths);
+    for (size_t s = 0; s < p.states; ++s) {
+      names.states.push_back(p.name == static_path ? "default" : fmt::format("{}_{}", s, names.id));
+      for (const char* part : parts) make_folder(folder_of(names, s) + part);
+    }
   }
-  std::set<std::string> used;
+  make_folder(path_ + errors);
   for (const HoneybeeGrid& g : grids) {
-    std::string id = identifier(g.name);
-    for (int n = 2; !used.insert(id).second; ++n) id = fmt::format("{}_{}", identifier(g.name), n);
     GridFiles& files = grids_.emplace_back();
     files.name = g.name;
-    files.id = id;
+    files.id = unique_id(g.name, used_grids);
     files.sensors = g.sensors;
-    files.total = std::make_unique<AtomicFile>(arrays + "total/" + id + ".npy");
-    files.direct = std::make_unique<AtomicFile>(arrays + "direct/" + id + ".npy");
-    for (AtomicFile* f : {files.total.get(), files.direct.get()})
-      f->write(npy_header(g.sensors, hours));
+  }
+}
+
+std::string HoneybeeFolder::folder_of(const PathNames& path, size_t state) const {
+  return path_ + "/" + path.id + "/" + path.states[state] + "/";
+}
+
+void HoneybeeFolder::open(GridFiles& grid) const {
+  grid.has_light.assign(paths_.size(), false);
+  grid.error = std::make_unique<AtomicFile>(path_ + errors + "/" + grid.id + ".npy");
+  grid.error->write(npy_header(grid.sensors, hours_));
+  for (const PathNames& p : paths_) {
+    std::vector<StateFiles>& files = grid.files.emplace_back();
+    for (size_t s = 0; s < p.states.size(); ++s) {
+      const auto open_part = [&](const char* part) {
+        auto file = std::make_unique<AtomicFile>(folder_of(p, s) + part + "/" + grid.id + ".npy");
+        file->write(npy_header(grid.sensors, hours_));
+        return file;
+      };
+      files.push_back({open_part(parts[0]), open_part(parts[1])});
+    }
   }
 }
 
@@ -79,10 +123,15 @@ HoneybeeFolder::HoneybeeFolder(std::string path, const std::vector<HoneybeeGrid>
 HoneybeeFolder::~HoneybeeFolder() {
   grids_.clear();
   std::error_code ignored;  // fails for folders that are not empty
-  const std::string default_folder = path_ + "/" + light_path + "/default";
-  for (const char* part : {"/total", "/direct", ""})
-    std::filesystem::remove(default_folder + part, ignored);
-  std::filesystem::remove(path_ + "/" + light_path, ignored);
+  for (const PathNames& p : paths_) {
+    for (size_t s = 0; s < p.states.size(); ++s)
+      for (const char* part : {parts[0], parts[1], ""})
+        std::filesystem::remove(folder_of(p, s) + part, ignored);
+    for (const std::string& state : p.states)
+      std::filesystem::remove(path_ + "/" + p.id + "/" + state, ignored);
+    std::filesystem::remove(path_ + "/" + p.id, ignored);
+  }
+  std::filesystem::remove(path_ + errors, ignored);
   std::filesystem::remove(path_, ignored);
 }
 
@@ -91,26 +140,64 @@ void HoneybeeFolder::add(const HoursOfSensor& hours) {
     ++grid_;
     sensor_ = 0;
   }
+  GridFiles& grid = grids_[grid_];
+  if (grid.files.empty()) open(grid);
   const auto bytes = [](const std::vector<float>& v) {
     return std::string_view(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(float));
   };
-  grids_[grid_].total->write(bytes(hours.total));
-  grids_[grid_].direct->write(bytes(hours.sun));
+  grid.error->write(bytes(hours.error));
+  size_t k = 0;
+  for (size_t p = 0; p < paths_.size(); ++p)
+    for (StateFiles& f : grid.files[p]) {
+      const HoursOfState& state = hours.states[k++];
+      f.total->write(bytes(state.total));
+      f.direct->write(bytes(state.sun));
+      grid.has_light[p] = grid.has_light[p] || std::any_of(state.total.begin(), state.total.end(),
+                                                           [](float lx) { return lx > 0; });
+    }
   ++sensor_;
 }
 
-void HoneybeeFolder::finish(const WeatherYear& year, const YearSkies& skies) {
+// State of every group in every hour of a year [1]. Hours without daylight show state 0.
+std::string HoneybeeFolder::schedule_json(const WeatherYear& year, const YearSkies& skies,
+                                          const StateSchedule& schedule) const {
+  HoneybeeJson json = HoneybeeJson::object();
+  for (size_t p = 0; p < paths_.size(); ++p) {
+    if (paths_[p].name == static_path) continue;
+    std::vector<int> states(year.steps.size(), 0);
+    for (size_t h = 0; h < skies.hours(); ++h) states[skies.steps[h]] = schedule.of(p)[h];
+    const bool is_static =
+        std::all_of(states.begin(), states.end(), [&](int s) { return s == states[0]; });
+    json[paths_[p].id] = {
+        {"identifier", paths_[p].id}, {"schedule", states}, {"is_static", is_static}};
+  }
+  return json.dump() + "\n";
+}
+
+void HoneybeeFolder::finish(const WeatherYear& year, const YearSkies& skies,
+                            const StateSchedule& schedule) {
   HoneybeeJson info = HoneybeeJson::array(), states = HoneybeeJson::object();
   for (GridFiles& g : grids_) {
-    g.total->commit();
-    g.direct->commit();
+    HoneybeeJson light_paths = HoneybeeJson::array(), dynamic = HoneybeeJson::object();
+    const bool is_dark =
+        std::find(g.has_light.begin(), g.has_light.end(), true) == g.has_light.end();
+    for (size_t p = 0; p < paths_.size(); ++p) {
+      if (!g.has_light[p] && !(is_dark && p == 0)) continue;
+      for (StateFiles& f : g.files[p]) {
+        f.total->commit();
+        f.direct->commit();
+      }
+      light_paths.push_back(HoneybeeJson::array({paths_[p].id}));
+      if (paths_[p].name != static_path) dynamic[paths_[p].id] = paths_[p].states;
+    }
+    g.error->commit();
     info.push_back({{"name", g.name},
                     {"identifier", g.id},
                     {"full_id", g.id},
                     {"group", ""},
                     {"count", g.sensors}});
-    info.back()["light_path"] = HoneybeeJson::array({HoneybeeJson::array({light_path})});
-    states[g.id] = HoneybeeJson::object();
+    info.back()["light_path"] = std::move(light_paths);
+    states[g.id] = std::move(dynamic);
   }
   const auto dump = [](const HoneybeeJson& json) {
     return json.dump(2, ' ', false, HoneybeeJson::error_handler_t::replace) + "\n";
@@ -121,6 +208,8 @@ void HoneybeeFolder::finish(const WeatherYear& year, const YearSkies& skies) {
   for (const WeatherStep& s : year.steps) study["study_hours"].push_back(s.hour_of_year);
   write_file(path_ + "/sun-up-hours.txt", hours);
   write_file(path_ + "/study_info.json", study.dump() + "\n");
+  if (paths_.size() > 1 || paths_[0].name != static_path)
+    write_file(path_ + "/dynamic_schedule.json", schedule_json(year, skies, schedule));
   write_file(path_ + "/grid_states.json", dump(states));
   write_file(path_ + "/grids_info.json", dump(info));
 }

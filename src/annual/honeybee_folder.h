@@ -1,5 +1,6 @@
 // Writes hourly illuminance in the layout of Honeybee's annual daylight results, which Ladybug
-// Tools post-process: grids_info.json, sun-up-hours.txt, and one array per grid.
+// Tools post-process: grids_info.json, sun-up-hours.txt, and one array per grid, light path and
+// state.
 //
 // References: [1] Ladybug Tools, honeybee-radiance-postprocess, class Results: names of files.
 //   [2] NumPy, "numpy.lib.format": layout of .npy files.
@@ -18,26 +19,41 @@ struct HoneybeeGrid {
   std::string name;
   size_t sensors = 0;
 };
+struct HoneybeePath {
+  std::string name;
+  size_t states = 1;
+};
 
-// Arrays are written while sensors come; nothing remains in the folder without finish().
+// Arrays are written while sensors come; nothing remains in the folder without finish(). A grid
+// has no arrays of a path that brings it no light.
 class HoneybeeFolder {
  public:
   // Throws EnvironmentError if a file cannot be written. Names that file systems may refuse are
   // changed for files, and kept as display names.
-  HoneybeeFolder(std::string path, const std::vector<HoneybeeGrid>& grids, size_t hours);
+  HoneybeeFolder(std::string path, const std::vector<HoneybeeGrid>& grids,
+                 const std::vector<HoneybeePath>& paths, size_t hours);
   ~HoneybeeFolder();
   HoneybeeFolder(const HoneybeeFolder&) = delete;
   HoneybeeFolder& operator=(const HoneybeeFolder&) = delete;
 
   // Adds the hours of the next sensor, lx.
   void add(const HoursOfSensor& hours);
-  // Writes the other files and makes all of them visible. Call it after the last sensor.
-  void finish(const WeatherYear& year, const YearSkies& skies);
+  // Writes the other files and makes all of them visible. Call it after the last sensor. schedule:
+  // one state per path and hour.
+  void finish(const WeatherYear& year, const YearSkies& skies, const StateSchedule& schedule);
 
  private:
   struct GridFiles;
+  struct PathNames;
+
+  void open(GridFiles& grid) const;
+  std::string folder_of(const PathNames& path, size_t state) const;
+  std::string schedule_json(const WeatherYear& year, const YearSkies& skies,
+                            const StateSchedule& schedule) const;
 
   std::string path_;
+  size_t hours_;
+  std::vector<PathNames> paths_;
   std::vector<GridFiles> grids_;
   size_t grid_ = 0, sensor_ = 0;  // next one
 };

@@ -39,6 +39,16 @@ class SensorCalculation {
     for (size_t r = 0; r < replicates; ++r) add_reflected(r);
     return std::move(out_);
   }
+  std::vector<SunHour> compute_sun() {
+    add_sun();
+    std::vector<SunHour> hours;
+    for (size_t h = 0; h < out_.hours; ++h) {
+      float sum = 0;
+      for (size_t r = 0; r < replicates; ++r) sum += out_.sun[r * out_.hours + h];
+      if (sum > 0) hours.push_back({uint32_t(h), sum / float(replicates)});
+    }
+    return hours;
+  }
 
  private:
   Vec3 world(const Vec3d& d) const {
@@ -173,6 +183,10 @@ class SensorCalculation {
 
 SensorHours sensor_hours(const YearOfLight& light, size_t sensor, const CellHit& place) {
   return SensorCalculation(light, sensor, place).compute();
+}
+
+std::vector<SunHour> sun_of_sensor(const YearOfLight& light, size_t sensor, const CellHit& place) {
+  return SensorCalculation(light, sensor, place).compute_sun();
 }
 
 }  // namespace troffer

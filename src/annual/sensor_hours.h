@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "annual/blinds.h"
 #include "annual/reflected_light.h"
 #include "annual/year_skies.h"
 
@@ -37,5 +38,9 @@ struct YearOfLight {
 
 // Computes a sensor. Any number of threads may do so for different sensors.
 SensorHours sensor_hours(const YearOfLight& light, size_t sensor, const CellHit& place);
+
+// Returns the hours in which the sun reaches a sensor straight, by the same rays as sensor_hours():
+// the mean of all replicates. YearOfLight::reflected is not used.
+std::vector<SunHour> sun_of_sensor(const YearOfLight& light, size_t sensor, const CellHit& place);
 
 }  // namespace troffer

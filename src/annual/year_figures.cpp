@@ -102,29 +102,29 @@ void add_leed(const YearFigure& sda, const YearFigure& ase, const YearFigure& op
 
 }  // namespace
 
-SensorFigures figures_of(std::span<const float> total, std::span<const float> sun,
-                         const YearTimes& times, int steps_per_hour,
+SensorFigures figures_of(const HoursOfFigures& hours, const YearTimes& times, int steps_per_hour,
                          const FigureSettings& settings) {
   SensorFigures f{};
   size_t lit = 0;  // occupied hours with daylight
   std::array<size_t, 4> daylight{};
   double all = 0;
-  for (size_t h = 0; h < total.size(); ++h) {
-    const double lx = double(total[h]);
+  for (size_t h = 0; h < hours.total.size(); ++h) {
+    const double lx = double(hours.total[h]), open_lx = double(hours.open[h]);
     all += lx;
     if (times.is_daylight[h] != 0)
       for (size_t k = 0; k < daylight.size(); ++k)
-        daylight[k] += lx >= std::array{100, 300, 500, 750}[k];
+        daylight[k] += open_lx >= std::array{100, 300, 500, 750}[k];
     if (times.is_occupied[h] == 0) continue;
     ++lit;
     at(f, SensorFigure::da) += lx >= settings.da_lx;
+    at(f, SensorFigure::da_open) += open_lx >= settings.da_lx;
     at(f, SensorFigure::cda) += std::min(1.0, lx / settings.da_lx);
     at(f, lx < udi_low      ? SensorFigure::udi_fell_short
           : lx < udi_useful ? SensorFigure::udi_supplementary
           : lx <= udi_high  ? SensorFigure::udi_autonomous
                             : SensorFigure::udi_exceeded) += 1;
     at(f, SensorFigure::mean_lx) += lx;
-    at(f, SensorFigure::sun_hours) += double(sun[h]) > sun_lx;
+    at(f, SensorFigure::sun_hours) += double(hours.sun[h]) > sun_lx;
   }
   at(f, SensorFigure::udi_fell_short) += double(times.occupied - lit);
   const auto occupied = double(times.occupied);
@@ -135,8 +135,8 @@ SensorFigures figures_of(std::span<const float> total, std::span<const float> su
   for (size_t k = 0; k < daylight.size(); ++k)
     f[size_t(SensorFigure::daylight_100) + k] =
         100 * double(daylight[k]) / double(std::max<size_t>(times.daylight, 1));
-  at(f, SensorFigure::morning_lx) = mean_of(total, times.mornings);
-  at(f, SensorFigure::afternoon_lx) = mean_of(total, times.afternoons);
+  at(f, SensorFigure::morning_lx) = mean_of(hours.open, times.mornings);
+  at(f, SensorFigure::afternoon_lx) = mean_of(hours.open, times.afternoons);
   return f;
 }
 
@@ -154,7 +154,8 @@ YearFigure FigureTable::of(size_t sensor, SensorFigure figure) const {
   return with_spread(troffer::at(at(sensor, 0), figure), sets);
 }
 
-GridResult grid_result(const FigureTable& table, size_t first, size_t count, bool has_equinoxes) {
+GridResult grid_result(const FigureTable& table, size_t first, size_t count, bool has_equinoxes,
+                       bool has_blinds) {
   const GridCounter grid(table, first, count);
   GridResult out;
   const auto add = [&](const char* key, const char* title, const char* unit, const YearFigure& f) {
@@ -163,6 +164,8 @@ GridResult grid_result(const FigureTable& table, size_t first, size_t count, boo
   const YearFigure sda = grid.share_from(SensorFigure::da, sda_share);
   const YearFigure ase = grid.share_from(SensorFigure::sun_hours, ase_hours);
   add("sda", "Spatial daylight autonomy (sDA)", "%", sda);
+  if (has_blinds)
+    add("sda_open", "sDA with blinds open", "%", grid.share_from(SensorFigure::da_open, sda_share));
   add("ase", "Annual sunlight exposure (ASE 1000/250)", "%", ase);
   struct Row {
     const char *key, *title, *unit;

@@ -22,6 +22,7 @@ namespace troffer {
 // Figures of one sensor.
 enum class SensorFigure : size_t {
   da,                 // % of occupied hours from `da_lx` on
+  da_open,            // the same with all blinds open
   cda,                // the same, hours below in proportion
   udi_fell_short,     // % of occupied hours below 100 lx
   udi_supplementary,  // from 100 to below 300 lx
@@ -29,12 +30,12 @@ enum class SensorFigure : size_t {
   udi_exceeded,       // above 3000 lx
   mean_lx,            // over occupied hours
   exposure_klxh,      // sum over all hours of the year, klx h
-  sun_hours,          // occupied hours with more than 1000 lx straight from the sun
-  daylight_100,       // % of daylight hours from 100 lx on
+  sun_hours,          // occupied hours with more than 1000 lx straight from the sun, blinds open
+  daylight_100,       // % of daylight hours from 100 lx on, blinds open
   daylight_300,
   daylight_500,
   daylight_750,
-  morning_lx,    // LEED option 2: clear equinox, 9 a.m. …
+  morning_lx,    // LEED option 2: clear equinox, blinds open, 9 a.m. …
   afternoon_lx,  // … and 3 p.m.
   count,
 };
@@ -45,10 +46,16 @@ struct FigureSettings {
   double da_lx = 300;
 };
 
-// Returns the figures of one sensor from its illuminance, and the part of it from the sun, in the
-// hours of a year (YearSkies). steps_per_hour: of the weather file.
-SensorFigures figures_of(std::span<const float> total, std::span<const float> sun,
-                         const YearTimes& times, int steps_per_hour,
+// Illuminance of a sensor in the hours of a year (YearSkies).
+struct HoursOfFigures {
+  std::span<const float> total;  // with blinds as they are operated
+  std::span<const float> open;   // with blinds open; the same as `total` without blinds
+  std::span<const float> sun;    // part of `open` that comes straight from the sun
+};
+
+// Returns the figures of one sensor. Standards that assess a building without movable shading (ASE,
+// EN 17037, LEED option 2) get the hours with blinds open. steps_per_hour: of the weather file.
+SensorFigures figures_of(const HoursOfFigures& hours, const YearTimes& times, int steps_per_hour,
                          const FigureSettings& settings);
 
 // A value with its standard error.
@@ -98,7 +105,9 @@ struct GridResult {
 };
 
 // Returns the figures of the sensors first … first + count - 1, each of which stands for the same
-// area. A requirement is undecided if the limit lies within two standard errors.
-GridResult grid_result(const FigureTable& table, size_t first, size_t count, bool has_equinoxes);
+// area. A requirement is undecided if the limit lies within two standard errors. has_blinds: there
+// are window groups with several states.
+GridResult grid_result(const FigureTable& table, size_t first, size_t count, bool has_equinoxes,
+                       bool has_blinds = false);
 
 }  // namespace troffer

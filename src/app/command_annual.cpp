@@ -8,7 +8,9 @@
 
 #include "annual/annual_page.h"
 #include "annual/annual_text.h"
-#include "annual/honeybee_folder.h"
+#include "annual/extras_text.h"
+#include "app/annual_scenes.h"
+#include "app/annual_sink.h"
 #include "app/common_options.h"
 #include "app/grid_points.h"
 #include "app/option_values.h"
@@ -24,15 +26,20 @@
 #include "image/atomic_file.h"
 #include "render/placement.h"
 #include "report/groups.h"
-#include "scene/scaled_lights.h"
 
 namespace troffer {
 
 namespace {
 
-constexpr std::array output_files{"annual.html", "annual.json", "metrics.csv"};
+// Files in the output folder.
+std::vector<std::string> output_files(const AnnualCommand& c) {
+  std::vector<std::string> names{"annual.html", "annual.json", "metrics.csv"};
+  if (!c.eyes.empty()) names.push_back("glare.csv");
+  if (!c.electric.empty()) names.push_back("electric.csv");
+  return names;
+}
+
 constexpr const char* honeybee = "honeybee";  // folder within the output folder
-constexpr float bright_lx = 300;              // AnnualGrid::share_300
 
 // Consecutive points of one surface form a grid.
 std::vector<AnnualGrid> grids_of(const AnnualCommand& c, const PointList& list) {
@@ -47,25 +54,14 @@ std::vector<AnnualGrid> grids_of(const AnnualCommand& c, const PointList& list) 
   return grids;
 }
 
-// Adds a sensor's hours to the means of its grid.
-void add_to_grid(const HoursOfSensor& hours, AnnualGrid& grid) {
-  grid.mean_lx.resize(hours.total.size(), 0);
-  grid.share_300.resize(hours.total.size(), 0);
-  const float share = 1.0f / float(grid.count);
-  for (size_t h = 0; h < hours.total.size(); ++h) {
-    grid.mean_lx[h] += share * hours.total[h];
-    grid.share_300[h] += hours.total[h] >= bright_lx ? 100 * share : 0;
-  }
-}
-
-std::vector<std::string> notes_of(const Scene& scene, const WeatherYear& year) {
+std::vector<std::string> notes_of(const Scene& scene, const WeatherYear& year, bool has_electric) {
   std::vector<std::string> notes;
   if (year.filled > 0)
     notes.push_back(
         fmt::format("{} of {} hours of the weather file lack irradiances and got those "
                     "of the nearest day",
                     year.filled, year.steps.size()));
-  if (!scene.lights.empty())
+  if (!scene.lights.empty() && !has_electric)
     notes.push_back(
         fmt::format("the {} light sources of the scene are off: the year is daylight "
                     "alone",
@@ -77,13 +73,11 @@ void guard_outputs(const AnnualCommand& c, OutputGuard& guard) {
   guard.add_inputs(c.scene, {});
   guard.add_input("--points", c.points);
   guard.add_input("--weather", c.weather);
-  for (const char* name : output_files)
+  guard.add_input("--groups", c.groups);
+  guard.add_input("--eyes", c.eyes);
+  guard.add_input("--sunlight", c.sunlight);
+  for (const std::string& name : output_files(c))
     guard.add_output("-o", (std::filesystem::path(c.output) / name).string());
-}
-
-Scene dark(Scene scene) {
-  const std::vector<Rgb> off(scene.lights.size(), Rgb{0});
-  return with_scaled_lights(std::move(scene), off);
 }
 
 int tell_stopped() {
@@ -93,13 +87,15 @@ int tell_stopped() {
 
 void write_outputs(const AnnualCommand& c, const AnnualReport& report, const ReportFolder& folder,
                    HoneybeeFolder& arrays, Clock::time_point start) {
-  arrays.finish(report.year, report.result.skies);
+  arrays.finish(report.year, report.result.skies, report.result.schedule);
   write_file(folder.file("metrics.csv"), annual_metrics(report));
+  if (!c.eyes.empty()) write_file(folder.file("glare.csv"), glare_csv(report));
+  if (!c.electric.empty()) write_file(folder.file("electric.csv"), electric_csv(report));
   write_file(folder.file("annual.json"), annual_json(report));
   write_file(folder.file("annual.html"), annual_page(report));
   if (c.is_quiet) return;
   std::vector<std::string> written;
-  for (const char* name : output_files) written.push_back(folder.file(name));
+  for (const std::string& name : output_files(c)) written.push_back(folder.file(name));
   tell_done(written, seconds_since(start), report.result.relative_error);
 }
 
@@ -114,6 +110,87 @@ PointList points_of(const AnnualCommand& c) {
   PointList list = c.points.empty() ? PointList{} : read_points(c.points);
   if (!c.is_quiet && !list.note.empty()) fmt::print(stderr, "note: {}\n", printable(list.note));
   return list;
+}
+
+// Points of --eyes and --sunlight.
+std::vector<MeasuringPoint> listed_points(const std::string& file) {
+  return file.empty() ? std::vector<MeasuringPoint>{} : read_points(file).points;
+}
+
+// Computes what needs no hours of sensors: sunlight and electric light.
+void add_sunlight(const AnnualCommand& c, const std::vector<LightPath>& paths,
+                  const WeatherYear& year, const Compass& compass, AnnualExtras& extras) {
+  extras.sunlight_day = parse_sunlight_day(c.sunlight_day);
+  const std::vector<MeasuringPoint> points = listed_points(c.sunlight);
+  const std::vector<double> hours =
+      sunlight_hours(paths, points, year, compass, extras.sunlight_day, c.options.threads);
+  for (size_t i = 0; i < points.size(); ++i) extras.sunlight.push_back({points[i], hours[i]});
+}
+
+void add_extra_options(CLI::App& s, AnnualCommand& c) {
+  s.add_option("--eyes", c.eyes,
+               "CSV file with columns x,y,z,nx,ny,nz: eyes and their lines of sight, rated for "
+               "glare in every hour");
+  s.add_option("--sunlight", c.sunlight,
+               "CSV file with columns x,y,z,nx,ny,nz: points whose exposure to sunlight is found");
+  s.add_option("--sunlight-day", c.sunlight_day,
+               "Day of --sunlight, and from which altitude of the sun on, in degrees [0]")
+      ->capture_default_str();
+  s.add_option("--electric", c.electric,
+               "Group of light sources that daylight dims; '*' stands for any letters; may be "
+               "repeated")
+      ->allow_extra_args(false);
+  s.add_option("--electric-target", c.electric_target_lx,
+               "Illuminance that daylight and --electric reach together, in lx")
+      ->check(number_between(1, 100000))
+      ->capture_default_str();
+}
+
+// Everything that a run reads and prepares before it computes.
+struct AnnualInputs {
+  PointList list;
+  std::vector<MeasuringPoint> eyes;
+  WeatherYear year;
+  Compass compass;
+  std::vector<std::string> notes;
+  std::vector<ElectricGroup> electric;
+  Scene lit;  // with its lights, for electric groups
+  std::vector<LightPath> paths;
+  std::vector<AnnualGrid> grids;
+};
+
+AnnualInputs read_inputs(const AnnualCommand& c) {
+  OutputGuard guard;
+  guard_outputs(c, guard);
+  AnnualInputs in;
+  in.list = points_of(c);
+  in.year = read_weather_year(c.weather);
+  in.eyes = listed_points(c.eyes);
+  parse_sunlight_day(c.sunlight_day);  // mistakes show before any work
+  UpUse up{true, {}};
+  Scene imported = load_scene(c.scene, {}, nullptr, c.is_quiet, up);
+  guard.check_files_read();
+  in.notes = notes_of(imported, in.year, !c.electric.empty());
+  if (!c.is_quiet)
+    for (const std::string& n : in.notes) fmt::print(stderr, "note: {}\n", n);
+  in.compass = make_compass(up.decision.up, c.north_deg, is_mirrored(imported));
+  in.electric = electric_groups(imported, c.electric);
+  if (!in.electric.empty()) in.lit = imported;
+  in.paths = annual_paths(c.scene, imported, c.groups);
+  if (uses_grids_of_model(c))
+    add_sensor_grids(imported, in.list);
+  else
+    add_grids(PreparedScene(with_lights_off(std::move(imported))), c.grid, up.decision.up, in.list);
+  in.grids = grids_of(c, in.list);
+  return in;
+}
+
+// Adds what follows from the hours of all sensors.
+void finish_extras(const AnnualCommand& c, const AnnualInputs& in, const AnnualResult& result,
+                   const DimmingYear& dimming, AnnualExtras& extras) {
+  for (EyeYear& e : extras.eyes) e.shares = shares_of_glare(e.dgp, result.times);
+  add_sunlight(c, in.paths, in.year, in.compass, extras);
+  extras.electric = dimming.use(result.times, in.year.steps_per_hour);
 }
 
 }  // namespace
@@ -144,6 +221,13 @@ void add_annual(CLI::App& app, AnnualCommand& c) {
                 "Occupied hours of every day, or a file with one number per hour of the year, of "
                 "which 0 means unoccupied")
       ->capture_default_str();
+  s->add_option("--groups", c.groups,
+                "Window groups and their states, for scenes other than HBJSON");
+  s->add_option("--blinds", c.options.blinds,
+                "Operation of window groups: lm-83 (closed against sun), open, or a table with a "
+                "column of states per group and a row per time step")
+      ->capture_default_str();
+  add_extra_options(*s, c);
   s->add_option("--threshold", c.options.figures.da_lx,
                 "Illuminance of daylight autonomy and sDA, in lx")
       ->check(number_between(1, 100000))
@@ -163,62 +247,50 @@ void add_annual(CLI::App& app, AnnualCommand& c) {
 
 int run_annual(const AnnualCommand& c, const std::string& command_line) {
   const Clock::time_point start = Clock::now();
-  OutputGuard guard;
-  guard_outputs(c, guard);
-  PointList list = points_of(c);
-  const WeatherYear year = read_weather_year(c.weather);
   const ThreadLimit limit(c.options.threads);
-  UpUse up{true, {}};
-  Scene imported = load_scene(c.scene, {}, nullptr, c.is_quiet, up);
-  guard.check_files_read();
-  std::vector<std::string> notes = notes_of(imported, year);
-  if (!c.is_quiet)
-    for (const std::string& n : notes) fmt::print(stderr, "note: {}\n", n);
-  const Compass compass = make_compass(up.decision.up, c.north_deg, is_mirrored(imported));
-  const PreparedScene scene(dark(std::move(imported)));
-  if (uses_grids_of_model(c))
-    add_sensor_grids(scene.scene, list);
-  else
-    add_grids(scene, c.grid, up.decision.up, list);
-  const std::vector<MeasuringPlace> places = measuring_places(scene, list.points);
-  std::vector<AnnualGrid> grids = grids_of(c, list);
-
+  AnnualInputs in = read_inputs(c);
   const ReportFolder folder(c.output);
   const StopFlag& stop = install_stop_handlers();
-  std::unique_ptr<HoneybeeFolder> arrays;
-  size_t grid = 0;
-  std::vector<HoneybeeGrid> named;
-  for (const AnnualGrid& g : grids) named.push_back({g.name, g.count});
-  const auto take = [&](size_t sensor, const HoursOfSensor& hours) {
-    if (!arrays)
-      arrays = std::make_unique<HoneybeeFolder>(folder.file(honeybee), named, hours.total.size());
-    while (sensor >= grids[grid].first + grids[grid].count) ++grid;
-    add_to_grid(hours, grids[grid]);
-    arrays->add(hours);
-  };
+  AnnualExtras extras;
+  extras.electric_target_lx = c.electric_target_lx;
+  for (const MeasuringPoint& eye : in.eyes) extras.eyes.push_back({eye, {}, {}, {}});
+  extras.lights = measure_electric(in.lit, in.electric, in.list.points, c.options.seed,
+                                   c.options.threads, stop);
+  DimmingYear dimming(extras.lights, c.electric_target_lx);
+  std::vector<MeasuringPoint> points = in.list.points;
+  points.insert(points.end(), in.eyes.begin(), in.eyes.end());
+  AnnualRequest request{in.paths, points, {}, in.year, in.compass, in.eyes.size()};
+  for (const AnnualGrid& g : in.grids) request.grids.push_back({g.first, g.count});
+  AnnualSink sink(folder.file(honeybee), in.paths, in.grids, extras.eyes, dimming);
   ProgressBar bar("annual", c.is_quiet);
   const AnnualResult result = compute_annual(
-      scene, places, year, compass, c.options, take, [&](double f) { bar.update(f); }, stop);
-  if (!result.is_complete || !arrays) return tell_stopped();
-  for (AnnualGrid& g : grids)
-    g.result = grid_result(result.figures, g.first, g.count, !result.times.mornings.empty());
+      request, c.options, [&](size_t sensor, const HoursOfSensor& h) { sink.take(sensor, h); },
+      [&](double f) { bar.update(f); }, stop);
+  if (!result.is_complete || sink.arrays() == nullptr) return tell_stopped();
+  for (AnnualGrid& g : in.grids)
+    g.result = grid_result(result.figures, g.first, g.count, !result.times.mornings.empty(),
+                           has_several_states(in.paths));
+  finish_extras(c, in, result, dimming, extras);
   const std::string name = std::filesystem::path(c.scene.file).filename().string();
   const AnnualReport report{c.title.empty() ? name : c.title,
                             c.scene.file,
                             c.weather,
                             TROFFER_VERSION,
                             command_line,
-                            notes,
+                            in.notes,
                             c.options.occupancy,
+                            c.options.blinds,
                             c.options.figures.da_lx,
                             c.north_deg,
                             c.options.subdivision,
-                            year,
-                            compass,
-                            list.points,
+                            in.year,
+                            in.compass,
+                            in.list.points,
                             result,
-                            std::move(grids)};
-  write_outputs(c, report, folder, *arrays, start);
+                            in.grids,
+                            in.paths,
+                            std::move(extras)};
+  write_outputs(c, report, folder, *sink.arrays(), start);
   return exit_done;
 }
 

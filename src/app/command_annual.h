@@ -15,8 +15,14 @@ struct AnnualCommand {
   std::string weather, output;  // file and folder
   std::string points;           // file, or empty
   GridChoice grid;
+  std::string groups;  // file, or empty
   AnnualOptions options;
   double north_deg = 0;
+  std::string eyes;      // file, or empty
+  std::string sunlight;  // file, or empty
+  std::string sunlight_day = "03-21";
+  std::vector<std::string> electric;  // groups of lights
+  double electric_target_lx = 500;
   std::string title;
   bool is_quiet = false;
 };

@@ -51,6 +51,10 @@ inline constexpr uint64_t annual_sun_grid = 0x616e'6e6e;
 inline constexpr uint64_t annual_direct_sky = 0x616e'6e64;
 inline constexpr uint64_t annual_direct_ground = 0x616e'6e74;
 inline constexpr uint64_t annual_direct_sun = 0x616e'6e73;
+inline constexpr uint64_t annual_eye_sky = 0x616e'6579;
+inline constexpr uint64_t annual_eye_sun = 0x616e'657a;
+inline constexpr uint64_t annual_eye_view = 0x616e'6576;
+inline constexpr uint64_t annual_eye_walks = 0x616e'6577;
 
 // Parts of a sample; derived from the stream of its pixel or point.
 inline constexpr uint64_t far_side = 0x6661'7220'7369'6465;

@@ -36,7 +36,7 @@ Scene import_file(const std::string& path, const ImportOptions& options) {
     throw UsageError("--variant, --time, --animation and --baked need a .gltf or .glb");
   if (!is_hbjson && !options.states.empty()) throw UsageError("--state needs an .hbjson");
   if (size_of_file(path) == 0) throw InputError(path, 0, 0, "is empty");
-  if (is_hbjson) return import_hbjson(path, options.states);
+  if (is_hbjson) return import_hbjson(path, options.states, options.blocked_groups);
   if (ending == "rad") return import_radiance(path);
   if (ending == "xml") return import_mitsuba(path, options.images);
   if (ending == "stl") return import_stl(path, {.progress = options.progress});

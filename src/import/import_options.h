@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "import/image_use.h"
@@ -18,6 +19,8 @@ struct ImportOptions {
   bool shows_baked = false;              // glTF: show only the light baked into the file
   // HBJSON: the state of dynamic groups by name, from 0; others show state 0.
   std::map<std::string, size_t> states;
+  // HBJSON: dynamic groups whose windows are black, for the light of the other windows.
+  std::set<std::string> blocked_groups;
   TellProgress progress;  // called while .obj, .ply and .stl files are read
   ImageUse images = ImageUse::read;
   // Factor on the emission of surfaces, except luminaires with a photometric web

@@ -101,6 +101,12 @@ double daylight_glare_probability(double vertical_lx,
   return std::min(5.87e-5 * vertical_lx + contrast + 0.159, 1.0);
 }
 
+double low_light_factor(double vertical_lx) {
+  if (vertical_lx >= low_light_lx) return 1;
+  const double e = std::exp(0.024 * vertical_lx - 4);
+  return e / (1 + e);
+}
+
 DaylightGlare daylight_glare(const Image& picture, const GlareSettings& settings) {
   if (picture.width != picture.height || picture.width < 2)
     throw UsageError("the picture is not square: a fisheye of 180 degrees is needed");
@@ -123,10 +129,7 @@ DaylightGlare daylight_glare(const Image& picture, const GlareSettings& settings
   for (const DaylightGlareSource& s : out.sources) direct += s.illuminance;
   out.background_luminance = std::max(0.0, out.vertical_lx - direct) / pi;
   out.dgp = daylight_glare_probability(out.vertical_lx, out.sources);
-  if (settings.corrects_low_light && out.vertical_lx < low_light_lx) {
-    const double e = std::exp(0.024 * out.vertical_lx - 4);
-    out.dgp *= e / (1 + e);
-  }
+  if (settings.corrects_low_light) out.dgp *= low_light_factor(out.vertical_lx);
   out.dgi = daylight_glare_index(out.sources, out.background_luminance);
   out.ugr = unified_glare_rating(out.sources, out.background_luminance);
   return out;

@@ -65,4 +65,7 @@ DaylightGlare daylight_glare(const Image& luminances, const GlareSettings& setti
 double daylight_glare_probability(double vertical_lx,
                                   const std::vector<DaylightGlareSource>& sources);
 
+// Factor on the DGP for low light [2]: below 1 for Ev below 1000 lx.
+double low_light_factor(double vertical_lx);
+
 }  // namespace troffer

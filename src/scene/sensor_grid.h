@@ -21,6 +21,7 @@ struct DynamicGroup {
   std::string name;
   std::vector<std::string> states;  // what each state shows
   size_t shown = 0;                 // index of the state in the scene
+  bool has_windows = false;         // light enters by apertures or doors of the group
 };
 
 }  // namespace troffer

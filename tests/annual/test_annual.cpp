@@ -48,13 +48,25 @@ struct Hours {
   std::vector<HoursOfSensor> sensors;
 };
 
-Hours run(const PreparedScene& scene, const std::vector<MeasuringPoint>& points,
+Hours run(const std::vector<LightPath>& paths, const std::vector<MeasuringPoint>& points,
           const AnnualOptions& options) {
   std::vector<HoursOfSensor> sensors;
+  const WeatherYear year = few_hours();
+  const Compass directions = compass();
   AnnualResult result = compute_annual(
-      scene, measuring_places(scene, points), few_hours(), compass(), options,
+      {paths, points, {{0, points.size()}}, year, directions}, options,
       [&](size_t, const HoursOfSensor& h) { sensors.push_back(h); }, {}, never_stop);
   return {std::move(result), std::move(sensors)};
+}
+
+// Paths of a scene without groups. The scene must outlive them.
+std::vector<LightPath> only(const PreparedScene& scene) {
+  return {{static_path, {{"default", {&scene, [](const PreparedScene*) {}}}}}};
+}
+
+Hours run(const PreparedScene& scene, const std::vector<MeasuringPoint>& points,
+          const AnnualOptions& options) {
+  return run(only(scene), points, options);
 }
 
 // Light of hour h as lights of a scene.
@@ -183,8 +195,10 @@ TEST_CASE("results do not depend on the number of threads") {
 
 TEST_CASE("a stop ends the calculation") {
   const PreparedScene scene(window_room());
+  const std::vector<LightPath> paths = only(scene);
+  const std::vector<MeasuringPoint> points{{{2, 1, 0.8}, {0, 0, 1}}};
+  const WeatherYear year = few_hours();
+  const Compass directions = compass();
   const StopFlag stop = true;
-  const AnnualResult r = compute_annual(scene, measuring_places(scene, {{{2, 1, 0.8}, {0, 0, 1}}}),
-                                        few_hours(), compass(), {}, {}, {}, stop);
-  CHECK(!r.is_complete);
+  CHECK(!compute_annual({paths, points, {{0, 1}}, year, directions}, {}, {}, {}, stop).is_complete);
 }

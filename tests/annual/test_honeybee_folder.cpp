@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -37,7 +38,9 @@ class TestFolder {
 };
 
 HoursOfSensor hours_of(float first) {
-  return {{first, first + 1, first + 2}, {0, 1, first}, {0, 0, 0}};
+  HoursOfSensor h;
+  h.states = {{{first, first + 1, first + 2}, {0, 1, first}}};
+  return h;
 }
 
 }  // namespace
@@ -62,9 +65,9 @@ TEST_CASE("arrays hold one row per sensor, and grids that need other names get t
   }
   YearSkies skies{{1, 2, 3}, {ReinhartSky(1), {}}, {ReinhartSky(1), {}}, {}, {}, {}};
   {
-    HoneybeeFolder files(folder.path().string(), {{"a/b", 2}, {"a b", 1}}, 3);
+    HoneybeeFolder files(folder.path().string(), {{"a/b", 2}, {"a b", 1}}, {{static_path, 1}}, 3);
     for (const float first : {10.0f, 20.0f, 30.0f}) files.add(hours_of(first));
-    files.finish(year, skies);
+    files.finish(year, skies, StateSchedule(1, 3));
   }
   const fs::path arrays = folder.path() / "__static_apertures__" / "default";
   const std::string total = contents(arrays / "total" / "a_b.npy");
@@ -80,10 +83,46 @@ TEST_CASE("arrays hold one row per sensor, and grids that need other names get t
         std::string::npos);
 }
 
+// Names as honeybee-radiance-postprocess reads them: GROUP/N_GROUP/total/GRID.npy, and only the
+// light paths that light a grid.
+TEST_CASE("groups have folders for each state, and a schedule") {
+  const TestFolder folder;
+  WeatherYear year;
+  year.steps.resize(3);
+  YearSkies skies{{1, 2}, {ReinhartSky(1), {}}, {ReinhartSky(1), {}}, {}, {}, {}};
+  StateSchedule schedule(3, 2);
+  schedule.of(1)[1] = 1;
+  {
+    HoneybeeFolder files(folder.path().string(), {{"a", 1}, {"b", 1}},
+                         {{static_path, 1}, {"South", 2}, {"North", 1}}, 2);
+    HoursOfSensor h;
+    h.states = {{{0, 0}, {0, 0}}, {{7, 8}, {0, 1}}, {{3, 4}, {0, 0}}, {{0, 0}, {0, 0}}};
+    files.add(h);
+    h.states = {{{1, 1}, {0, 0}}, {{0, 0}, {0, 0}}, {{0, 0}, {0, 0}}, {{0, 9}, {0, 0}}};
+    files.add(h);
+    files.finish(year, skies, schedule);
+  }
+  const std::string closed = contents(folder.path() / "South" / "1_South" / "total" / "a.npy");
+  float last = 0;
+  REQUIRE(closed.size() == npy_header(1, 2).size() + 2 * sizeof last);
+  std::memcpy(&last, closed.data() + closed.size() - sizeof last, sizeof last);
+  CHECK(last == 4);
+  CHECK(!fs::exists(folder.path() / "South" / "1_South" / "total" / "b.npy"));
+  CHECK(!fs::exists(folder.path() / "North" / "0_North" / "total" / "a.npy"));
+  CHECK(fs::exists(folder.path() / "North" / "0_North" / "direct" / "b.npy"));
+  CHECK(!fs::exists(folder.path() / "__static_apertures__" / "default" / "total" / "a.npy"));
+  CHECK(contents(folder.path() / "dynamic_schedule.json") ==
+        R"({"South":{"identifier":"South","schedule":[0,0,1],"is_static":false},)"
+        R"("North":{"identifier":"North","schedule":[0,0,0],"is_static":true}})"
+        "\n");
+  const std::string states = contents(folder.path() / "grid_states.json");
+  CHECK(states.find("\"1_South\"") != std::string::npos);
+}
+
 TEST_CASE("an unfinished folder leaves nothing") {
   const TestFolder folder;
   {
-    HoneybeeFolder files(folder.path().string(), {{"room", 2}}, 3);
+    HoneybeeFolder files(folder.path().string(), {{"room", 2}}, {{static_path, 1}}, 3);
     files.add(hours_of(1));
   }
   CHECK(!fs::exists(folder.path()));

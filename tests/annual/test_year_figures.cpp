@@ -34,7 +34,7 @@ const std::vector<float> sun{0, 0, 0, 0, 0, 1000, 1001, 5000, 8000, 0};
 // Definitions as honeybee-radiance-postprocess has them (metrics.py): da counts from the threshold
 // on, udi from 100 to 3000 lx inclusive, and hours of night below 100 lx.
 TEST_CASE("figures of a sensor count hours") {
-  const SensorFigures f = figures_of(total, sun, short_year(), 1, {300});
+  const SensorFigures f = figures_of({total, total, sun}, short_year(), 1, {300});
   CHECK(at(f, SensorFigure::da) == doctest::Approx(40));  // 300, 3000, 3001, 6000
   const double partial = (50 + 100 + 150 + 299) / 300.0;
   CHECK(at(f, SensorFigure::cda) == doctest::Approx(10 * (4 + partial)));
@@ -54,7 +54,7 @@ TEST_CASE("figures of a sensor count hours") {
 }
 
 TEST_CASE("quarters of an hour count as such") {
-  const SensorFigures f = figures_of(total, sun, short_year(), 4, {300});
+  const SensorFigures f = figures_of({total, total, sun}, short_year(), 4, {300});
   CHECK(at(f, SensorFigure::sun_hours) == doctest::Approx(0.5));
   CHECK(at(f, SensorFigure::exposure_klxh) == doctest::Approx(21.910 / 4));
   CHECK(at(f, SensorFigure::da) == doctest::Approx(40));
@@ -65,6 +65,20 @@ TEST_CASE("the error is that of the mean of replicates") {
   const YearFigure f = with_spread(2.4, values);
   CHECK(f.value == 2.4);
   CHECK(f.error == doctest::Approx(std::sqrt(5.0 / 3) / 2));
+}
+
+// LM-83 and EN 17037 assess sunlight and provision without movable shading.
+TEST_CASE("blinds count for autonomy but not for sunlight, EN 17037 and LEED option 2") {
+  const std::vector<float> shaded(10, 40.0f);
+  const SensorFigures f = figures_of({shaded, total, sun}, short_year(), 1, {300});
+  CHECK(at(f, SensorFigure::da) == 0);
+  CHECK(at(f, SensorFigure::da_open) == doctest::Approx(40));
+  CHECK(at(f, SensorFigure::udi_fell_short) == doctest::Approx(100));
+  CHECK(at(f, SensorFigure::mean_lx) == doctest::Approx(32));
+  CHECK(at(f, SensorFigure::exposure_klxh) == doctest::Approx(0.4));
+  CHECK(at(f, SensorFigure::sun_hours) == 2);
+  CHECK(at(f, SensorFigure::daylight_300) == doctest::Approx(50));
+  CHECK(at(f, SensorFigure::morning_lx) == doctest::Approx(225));
 }
 
 TEST_CASE("figures of a grid are shares of its sensors") {

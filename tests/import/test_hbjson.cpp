@@ -196,8 +196,36 @@ TEST_CASE("dynamic groups show the state that is asked for, and name the others"
   CHECK(closed.dynamic_groups[0].shown == 1);
   CHECK(look_of(closed, "blind").area == doctest::Approx(2));
   CHECK(look_of(closed, "generic_exterior_shade_0.35").area == doctest::Approx(1));
+  CHECK(open.dynamic_groups[0].has_windows);
   CHECK_THROWS_AS(import_text(room.text(), {{"South", 2}}), UsageError);
   CHECK_THROWS_AS(import_text(room.text(), {{"North", 0}}), UsageError);
+}
+
+TEST_CASE("a blocked group has a black window and no shades of states") {
+  HbjsonRoom room;
+  room.window =
+      R"("dynamic_group_identifier":"South","states":[{"shades":[{"identifier":"slat",
+         "geometry":{"boundary":[[1,-1,1],[3,-1,1],[3,-1,1.5],[1,-1,1.5]]}}]}])";
+  const TempFolder folder;
+  ImportOptions options;
+  options.blocked_groups = {"South"};
+  const Scene scene = import_scene(folder.write("m.hbjson", room.text()), options);
+  CHECK(look_of(scene, "generic_exterior_window_vis_0.64").area == 0);
+  CHECK(look_of(scene, "generic_exterior_shade_0.35").area == 0);
+  CHECK(look_of(scene, "troffer black window").area == doctest::Approx(2));
+  const Material& black = material_named(scene, "troffer black window");
+  CHECK(black.base_color.value.is_black());
+  CHECK(black.diffuse_transmission.value == 0);
+}
+
+TEST_CASE("a group without states has one state") {
+  HbjsonRoom room;
+  room.window = R"("dynamic_group_identifier":"South")";
+  const Scene scene = import_text(room.text());
+  REQUIRE(scene.dynamic_groups.size() == 1);
+  CHECK(scene.dynamic_groups[0].states.size() == 1);
+  CHECK(look_of(scene, "generic_exterior_window_vis_0.64").area == doctest::Approx(2));
+  CHECK_THROWS_AS(import_text(room.text(), {{"South", 1}}), UsageError);
 }
 
 // A wall of 6 m² with a window of 1 m², a door of 2 m² on its lower edge, an L-shaped opening of

@@ -79,7 +79,7 @@ void add_orphans(const JsonNode& model, HbjsonParts& parts) {
   parts.finish("shades");
 }
 
-void read_model(const JsonNode& model, const std::map<std::string, size_t>& states, Scene& scene,
+void read_model(const JsonNode& model, const HbjsonStates& states, Scene& scene,
                 PlacedBounds& bounds) {
   const double unit_m = unit_of(model);
   warn_of_others(model,
@@ -109,7 +109,8 @@ void read_model(const JsonNode& model, const std::map<std::string, size_t>& stat
 
 }  // namespace
 
-Scene import_hbjson(const std::string& path, const std::map<std::string, size_t>& states) {
+Scene import_hbjson(const std::string& path, const std::map<std::string, size_t>& states,
+                    const std::set<std::string>& blocked) {
   std::string text = read_text_file(path, max_model_bytes);
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
   const JsonDocument document(path, std::move(text));
@@ -119,7 +120,7 @@ Scene import_hbjson(const std::string& path, const std::map<std::string, size_t>
     throw InputError(path, 1, 1, "is not a Honeybee model: it has no \"type\": \"Model\"");
   return import_recentred([&](Scene& scene, PlacedBounds& bounds) {
     scene.file = path;
-    read_model(model, states, scene, bounds);
+    read_model(model, {states, blocked}, scene, bounds);
   });
 }
 

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 
 #include "scene/scene.h"
@@ -17,10 +18,11 @@ namespace troffer {
 // doors are cut out of them. Of two faces between rooms, the second is moved into its room by twice
 // the tolerance, without its apertures [2]. Meshes are named by their room. Sensor grids and views
 // become Scene::grids and Scene::cameras. `states` chooses the state of dynamic groups by name; the
-// others show state 0.
+// others show state 0. The windows of `blocked` groups are black.
 //
 // docs/reference/hbjson.md lists what is supported and left out. Throws InputError, with line and
 // column, for malformed models, and UsageError for unknown groups and states.
-Scene import_hbjson(const std::string& path, const std::map<std::string, size_t>& states = {});
+Scene import_hbjson(const std::string& path, const std::map<std::string, size_t>& states = {},
+                    const std::set<std::string>& blocked = {});
 
 }  // namespace troffer

@@ -25,6 +25,7 @@ constexpr Generic generics[] = {
     {"generic_interior_shade_0.50", "plastic", {0.5, 0.5, 0.5}},
     {"generic_exterior_shade_0.35", "plastic", {0.35, 0.35, 0.35}},
     {"generic_context_0.20", "plastic", {0.2, 0.2, 0.2}},
+    {HbjsonModifiers::black, "plastic", {0, 0, 0}},
     {"generic_exterior_window_vis_0.64", "glass", {0.6975761815, 0.6975761815, 0.6975761815}},
     {"generic_interior_window_vis_0.88", "glass", {0.9584154329, 0.9584154329, 0.9584154329}},
 };

@@ -23,6 +23,8 @@ struct ModifierSlot {
 
 class HbjsonModifiers {
  public:
+  static constexpr const char* black = "troffer black window";  // reflects and transmits nothing
+
   // All arguments must outlive this object. Defines all modifiers of the model in `materials`.
   // unit_m: length of a unit of the model, metres.
   HbjsonModifiers(const JsonNode& model, double unit_m, RadianceMaterials& materials,

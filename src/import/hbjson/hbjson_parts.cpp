@@ -61,40 +61,51 @@ std::optional<JsonNode> radiance_of(const JsonNode& part) {
   return properties ? properties->find_value("radiance") : std::nullopt;
 }
 
+[[noreturn]] void fail_of_state(const std::string& group, size_t states) {
+  throw UsageError(
+      fmt::format("--state: group '{}' has the states 0 to {}", printable(group), states - 1));
+}
+
 }  // namespace
 
 // Notes the group of a dynamic part, and returns its state that is shown.
-std::optional<JsonNode> HbjsonParts::state_of(const JsonNode& radiance) {
+HbjsonParts::DynamicState HbjsonParts::state_of(const JsonNode& radiance, bool is_window) {
   const auto list = radiance.find_value("states");
-  if (!list || list->size() == 0) return std::nullopt;
+  const size_t count = list ? list->size() : 0;
   const auto group = radiance.find_value("dynamic_group_identifier");
   if (!group) {
-    scene_.warnings.add("states of a part without a dynamic group are left out");
-    return std::nullopt;
+    if (count > 0) scene_.warnings.add("states of a part without a dynamic group are left out");
+    return {};
   }
   const std::string& name = group->as_string();
   auto known = std::find_if(scene_.dynamic_groups.begin(), scene_.dynamic_groups.end(),
                             [&](const DynamicGroup& g) { return g.name == name; });
   if (known == scene_.dynamic_groups.end())
-    known = scene_.dynamic_groups.insert(known, DynamicGroup{name, {}, 0});
-  for (size_t i = known->states.size(); i < list->size(); ++i) {
+    known = scene_.dynamic_groups.insert(known, DynamicGroup{name, {"state 0"}, 0, false});
+  known->has_windows = known->has_windows || is_window;
+  for (size_t i = 0; i < count; ++i) {
+    if (i >= known->states.size()) known->states.push_back(fmt::format("state {}", i));
     const auto modifier = list->element(i).find_value("modifier");
-    known->states.push_back(modifier && modifier->is_string() ? modifier->as_string()
-                                                              : fmt::format("state {}", i));
+    if (modifier && modifier->is_string()) known->states[i] = modifier->as_string();
   }
-  const auto chosen = states_.find(name);
-  const size_t shown = chosen == states_.end() ? 0 : chosen->second;
-  if (shown >= list->size())
-    throw UsageError(fmt::format("--state: group '{}' has the states 0 to {}", printable(name),
-                                 list->size() - 1));
+  if (states_.blocked.contains(name)) return {std::nullopt, true};
+  const auto chosen = states_.shown.find(name);
+  const size_t shown = chosen == states_.shown.end() ? 0 : chosen->second;
   known->shown = shown;
-  return list->element(shown);
+  if (count == 0) return {};
+  if (shown >= count) fail_of_state(name, count);
+  return {list->element(shown), false};
 }
 
 void HbjsonParts::check_states() const {
-  for (const auto& [name, state] : states_) {
+  for (const auto& [name, state] : states_.shown) {
     const auto is_it = [&](const DynamicGroup& g) { return g.name == name; };
-    if (std::any_of(scene_.dynamic_groups.begin(), scene_.dynamic_groups.end(), is_it)) continue;
+    const auto known_group =
+        std::find_if(scene_.dynamic_groups.begin(), scene_.dynamic_groups.end(), is_it);
+    if (known_group != scene_.dynamic_groups.end()) {
+      if (state >= known_group->states.size()) fail_of_state(name, known_group->states.size());
+      continue;
+    }
     std::string known;
     for (const DynamicGroup& g : scene_.dynamic_groups)
       known += (known.empty() ? "" : ", ") + printable(g.name);
@@ -104,10 +115,14 @@ void HbjsonParts::check_states() const {
 }
 
 HbjsonParts::Shown HbjsonParts::shown(const JsonNode& part, const std::string& room_set,
-                                      const ModifierSlot& slot) {
+                                      const ModifierSlot& slot, bool is_window) {
   const auto radiance = radiance_of(part);
   Shown out;
-  if (radiance) out.state = state_of(*radiance);
+  if (radiance) {
+    const DynamicState dynamic = state_of(*radiance, is_window);
+    if (dynamic.is_blocked) return {HbjsonModifiers::black, std::nullopt};
+    out.state = dynamic.state;
+  }
   auto own = radiance ? radiance->find_value("modifier") : std::nullopt;
   if (out.state)
     if (const auto of_state = out.state->find_value("modifier")) own = of_state;
@@ -151,7 +166,8 @@ void HbjsonParts::add_opening(const JsonNode& opening, bool is_door, const std::
   const bool is_outdoors = boundary_of(opening) == "Outdoors";
   const Shown s = shown(opening, room_set,
                         is_door ? slot_of_door(opening, face_type, is_outdoors)
-                                : slot_of_aperture(opening, face_type, is_outdoors));
+                                : slot_of_aperture(opening, face_type, is_outdoors),
+                        true);
   add_flat(opening, s.modifier, true);
   add_state_shades(s, room_set);
 }

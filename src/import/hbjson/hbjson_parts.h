@@ -12,10 +12,16 @@
 
 namespace troffer {
 
+// States of dynamic groups by name, as the user asks for them. Other groups show state 0.
+struct HbjsonStates {
+  const std::map<std::string, size_t>& shown;
+  const std::set<std::string>& blocked;  // groups whose parts are black
+};
+
 class HbjsonParts {
  public:
   // All arguments must outlive this object. tolerance: that of the model, metres.
-  HbjsonParts(double unit_m, double tolerance, const std::map<std::string, size_t>& states,
+  HbjsonParts(double unit_m, double tolerance, const HbjsonStates& states,
               HbjsonModifiers& modifiers, RadianceSurfaces& surfaces, Scene& scene)
       : unit_m_(unit_m),
         tolerance_(tolerance),
@@ -39,7 +45,7 @@ class HbjsonParts {
 
  private:
   double unit_m_, tolerance_;
-  const std::map<std::string, size_t>& states_;
+  HbjsonStates states_;
   HbjsonModifiers& modifiers_;
   RadianceSurfaces& surfaces_;
   Scene& scene_;
@@ -50,8 +56,14 @@ class HbjsonParts {
     std::string modifier;
     std::optional<JsonNode> state;
   };
-  Shown shown(const JsonNode& part, const std::string& room_set, const ModifierSlot& slot);
-  std::optional<JsonNode> state_of(const JsonNode& radiance);
+  Shown shown(const JsonNode& part, const std::string& room_set, const ModifierSlot& slot,
+              bool is_window = false);
+  // State that a part of a dynamic group shows; a part without states has none.
+  struct DynamicState {
+    std::optional<JsonNode> state;
+    bool is_blocked = false;
+  };
+  DynamicState state_of(const JsonNode& radiance, bool is_window);
   void add_opening(const JsonNode& opening, bool is_door, const std::string& face_type,
                    const std::string& room_set);
   void add_state_shades(const Shown& shown, const std::string& room_set);
