@@ -1,4 +1,4 @@
-// The sources of daylight outside a scene for which light is computed apart: patches of the sky,
+// The sources of daylight outside a scene whose light is computed separately: patches of the sky,
 // the ground below the horizon, and positions of the sun. Reflected light has one right-hand side
 // per source. Directions are in world space.
 #pragma once
@@ -32,7 +32,7 @@ class OutsideSources {
   // mirrored patch of the ground, which is large. Weights are for the mean over all of them.
   void draw(size_t source, int count, Random& random, std::vector<OutsideSample>& out) const;
   // Returns the radiance that a ray leaving in this direction sees per unit of a source. A sun
-  // counts as a disc of 5 degrees: only rays by way of mirrors, glass and gloss ask.
+  // counts as a disc of 5 degrees, since only rays by way of mirrors, glass and gloss use this.
   float radiance(size_t source, const Vec3& direction) const;
 
  private:

@@ -67,7 +67,7 @@ class TransportCells {
   const LinkRows<CellLink>& rows() const { return rows_; }
   const LinkRows<OutsideLink>& sensors_outside() const { return sensors_outside_; }
   const LinkRows<OutsideLink>& rows_outside() const { return rows_outside_; }
-  // True if no link changes colours. Luminances then suffice, whatever colour panes have.
+  // True if all links are grey, so that luminances suffice.
   bool is_grey() const { return is_grey_; }
   // Factor of direct light at a place by its coat (bsdf/bsdf.h), 1 without one.
   float coat_factor(const CellHit& hit, float cosine) const;

@@ -35,7 +35,7 @@ Camera camera_named(const Scene& scene, const std::string& name) {
 struct PlaceOfTime {
   std::string place, time;
 };
-PlaceOfTime split_at(const std::string& text) {
+PlaceOfTime place_of_time(const std::string& text) {
   const size_t comma = text.rfind(',');
   if (comma == text.npos) return {};
   return {text.substr(0, comma + 1), text.substr(comma + 1)};
@@ -86,7 +86,7 @@ int run_view(const ViewCommand& c) {
   settings.file = c.scene.file;
   read_size(c.size, settings);
   const ThreadLimit limit(c.threads);
-  const PlaceOfTime at = split_at(c.daylight.at);
+  const PlaceOfTime at = place_of_time(c.daylight.at);
   // Another time of day relights the scene as it was read, even if its files change.
   SceneChoice choice = c.scene;
   std::optional<KeptFiles> kept;

@@ -73,6 +73,7 @@ std::vector<Warning> write_scene(Scene scene, const std::string& path, const Bak
                                  const std::optional<Vec3>& up, OutputFolder& files) {
   check_scene_format(path);
   const size_t measured = make_even(scene);
+  const size_t relays = scene.relays.size();
   const bool is_pbrt = ending_of(path) == ".pbrt";
   const size_t pictures = is_pbrt ? 0 : drop_images_of_lights(scene);
   WarningLog changed;
@@ -85,6 +86,11 @@ std::vector<Warning> write_scene(Scene scene, const std::string& path, const Bak
   if (pictures > 0)
     lost.push_back(
         {"lights that project an image are written as uniform lights of the same flux", pictures});
+  if (relays > 0)
+    lost.push_back(
+        {"mirrors that only reflect light from sources (Radiance's \"mirror\" with an alternate "
+         "material) are left out",
+         relays});
   if (measured > 0)
     lost.push_back(
         {"measured luminaires are written as uniform sources of the same flux", measured});

@@ -1,5 +1,6 @@
 // Indirect light by gather rays that read cells (docs/method/cells.md). First hits of viewing rays
-// take the fit of the picture's records where it holds, and gather for themselves elsewhere.
+// read the fit of the picture's records where it holds, and trace gather rays of their own
+// elsewhere.
 #pragma once
 
 #include <memory>

@@ -1,7 +1,7 @@
 // Makes the gather records of a picture (gather_records.h), for GatherRecords::make(). The steps
 // are first gathers, thinning, further rays and fits, each over the whole picture before the next.
-// Tiles are shared by threads and processes; the result does not depend on either. Where pixels are
-// closer together than light changes, every second pixel of every second row has a record
+// Tiles are shared by threads and processes; the result does not depend on either. Where light
+// varies little between pixels, only every second pixel of every second row has a record
 // (gather_thinning.h).
 #pragma once
 

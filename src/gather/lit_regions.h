@@ -50,7 +50,7 @@ struct LitRegionHits {
 
 // Visibility of all lit regions from some places.
 struct RegionVisibility {
-  std::vector<float> visible;  // per region: the visible share, times found over expected light
+  std::vector<float> visible;  // per region: visible share × light found / light expected
   float rest = 0;              // mean square of the irradiance that other rays bring
 };
 

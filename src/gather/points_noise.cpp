@@ -12,7 +12,7 @@ namespace {
 
 constexpr double most_times = 64;
 // Limit of rays of rows, for memory.
-constexpr double most_rays = 1 << 24;
+constexpr double most_sample_rays = 1 << 24;
 
 // Returns the rays of one set.
 std::span<const PointRay> rays_of(const PointsSeen& points, size_t set) {
@@ -106,7 +106,7 @@ double times_as_many_rays(const PointsNoise& noise, double rays_of_rows) {
   if (!(rays_of_rows > 0) || !(noise.by_rows > 0) || !(others > 0)) return 1;
   const double of_points = noise.gather_rays + noise.other_rays;
   const double times = std::sqrt(of_points * noise.by_rows / (rays_of_rows * others));
-  return std::max(std::min({times, most_times, most_rays / rays_of_rows}), 1.0);
+  return std::max(std::min({times, most_times, most_sample_rays / rays_of_rows}), 1.0);
 }
 
 }  // namespace troffer

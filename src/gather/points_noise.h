@@ -1,9 +1,9 @@
-// Estimates the noise of measuring points that gather light from cells, and how many rays of cells
-// these are worth. Used by cell_builder.cpp.
+// Estimates the noise of measuring points that gather light from cells, and from it the number of
+// rays that cells should get. Used by cell_builder.cpp.
 //
 // A point's error has two parts. Gather rays bring their own part down to the asked error. The part
-// of the cells does not depend on them. Rays of cells serve all points, so many points are worth
-// many of them: docs/method/measuring.md, "Rays for points".
+// of the cells does not depend on them. Rays of cells serve all points, so more of them pay off
+// where there are more points: docs/method/measuring.md, "Rays for points".
 #pragma once
 
 #include <span>
@@ -60,10 +60,11 @@ PointsNoise noise_at_points(const PointsSeen& points, const std::vector<float>& 
                             const CellErrors& off, const GatheringPoints& how, uint64_t seed,
                             int threads);
 
-// Returns how many times as many rays the cells are worth, at least 1. A ray of a cell and one of a
-// point cost the same, and the time for a given error is to be least. With G rays of points, others
-// included, the variance is V by the R rays of rows and U by all else. With R' rays, time times
-// variance, (G + R') (U + V R / R'), is least for R'² = G V R / U.
+// Returns the factor for the number of rays of cells, at least 1, that makes the time for a given
+// error least. A ray of a cell costs as much as one of a point. Let G be the number of all other
+// rays, R that of the rays of cells, V the variance that these cause, and U all other variance.
+// With R' rays of cells, time times variance is (G + R') (U + V R / R'), which is least for R'² = G
+// V R / U.
 double times_as_many_rays(const PointsNoise& noise, double rays_of_rows);
 
 }  // namespace troffer

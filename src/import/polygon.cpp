@@ -39,7 +39,7 @@ bool is_inside(const Vec2d& p, const Vec2d& a, const Vec2d& b, const Vec2d& c) {
   return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
 }
 
-bool is_convex(const std::vector<Vec2d>& p) {
+bool is_convex_ring(const std::vector<Vec2d>& p) {
   const size_t n = p.size();
   for (size_t i = 0; i < n; ++i)
     if (turn(p[i], p[(i + 1) % n], p[(i + 2) % n]) < 0) return false;
@@ -87,7 +87,7 @@ void triangulate(std::span<const Vec3> points, std::vector<Triangle>& triangles)
   std::iota(ring.begin(), ring.end(), 0u);
   if (points.size() > 3 && points.size() <= max_ear_corners) {
     const std::vector<Vec2d> p = projected(points, newell_normal(points));
-    if (!is_convex(p)) cut_ears(p, ring, triangles);
+    if (!is_convex_ring(p)) cut_ears(p, ring, triangles);
   }
   for (size_t i = 2; i < ring.size(); ++i) triangles.push_back({ring[0], ring[i - 1], ring[i]});
 }

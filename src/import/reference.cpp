@@ -14,17 +14,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-char lower(char c) {
+char lower_case(char c) {
   return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
 }
 
 bool is_same_but_for_case(const std::string& a, const std::string& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](char x, char y) { return lower(x) == lower(y); });
+                    [](char x, char y) { return lower_case(x) == lower_case(y); });
 }
 
 bool has_drive(const std::string& name) {
-  return name.size() > 1 && name[1] == ':' && lower(name[0]) >= 'a' && lower(name[0]) <= 'z';
+  return name.size() > 1 && name[1] == ':' && lower_case(name[0]) >= 'a' &&
+         lower_case(name[0]) <= 'z';
 }
 
 bool is_file(const fs::path& path) {

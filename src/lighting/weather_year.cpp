@@ -21,7 +21,7 @@ namespace {
 constexpr uint64_t most_bytes = uint64_t(256) << 20;
 constexpr double missing_value = 9999;  // [1]
 // W/m². As in weather.cpp: above what the sun sends, and below what instruments show at night.
-constexpr double most_irradiance = 2000, least_measured = -50;
+constexpr double most_hourly_irradiance = 2000, least_hourly_irradiance = -50;
 // Years of .wea files, which name none: without and with a leap day.
 constexpr int plain_year = 2015, leap_year = 2016;
 
@@ -85,11 +85,11 @@ class YearReader {
   // Returns an irradiance, and sets is_missing if there is none.
   double irradiance(const std::string& text, const std::string& name, bool& is_missing) const {
     const double v = text.empty() ? missing_value : number(text, name, -1e9, 1e9);
-    if (v >= missing_value || v < least_measured) {
+    if (v >= missing_value || v < least_hourly_irradiance) {
       is_missing = true;
       return 0;
     }
-    if (v > most_irradiance)
+    if (v > most_hourly_irradiance)
       fail(fmt::format("{}: {:.6g} W/m2 are more than the sun sends", name, v));
     return std::max(v, 0.0);
   }

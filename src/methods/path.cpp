@@ -239,9 +239,15 @@ void PathIntegrator::add_images(Scratch& s, RadianceBatch& out, Counters& counte
     const FlatMirror& mirror = options_.images->all()[m].mirror;
     s.imaged.clear();
     for (size_t i = 0; i < s.wave.size(); ++i) {
-      if (!is_lambertian(s.wave.bsdfs[i], nullptr)) continue;
+      const Bsdf& bsdf = s.wave.bsdfs[i];
+      const bool is_matte = is_lambertian(bsdf, nullptr);
+      // Paths from other surfaces count what they meet in a mirror themselves, but meet no relay.
+      if (!is_matte && !mirror.relayed) continue;
       if (mirror.above(s.wave.vertices[i].surface.position) <= mirror.tolerance) continue;
+      const Bsdf diffuse = is_matte ? bsdf : diffuse_part(bsdf);
+      if (!is_matte && !diffuse.has_separable) continue;
       s.imaged.take(s.wave, i);
+      s.imaged.bsdfs.back() = diffuse;
       Walk& walk = s.imaged.walks.back();
       walk.stream = hash_of(walk.stream, stream::mirror_image_of_path, uint64_t(m));
     }

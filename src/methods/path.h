@@ -26,8 +26,8 @@ struct PathOptions {
   // Leaves out light that reaches a sensor straight from sources, or by way of the mirrors of
   // `images`.
   bool leaves_out_direct_at_sensors = false;
-  // Mirrors in which matte surfaces sample lights as if these were seen directly. Null: only paths
-  // that happen to hit a light behind a mirror find it.
+  // Mirrors in which matte surfaces sample lights as if these were seen directly. Null: the scene's
+  // relays, which no path meets. Paths find light in other mirrors only by hitting it.
   std::shared_ptr<const MirrorImages> images = nullptr;
   // Cells at which paths end: the first matte reflection after a scattering reads the irradiance
   // there, if the ray is longer than a few cells. Null: paths end by roulette alone.
@@ -39,8 +39,10 @@ class PathIntegrator final : public Integrator {
   PathIntegrator(const PreparedScene& scene, const PathOptions& options)
       : scene_(scene), options_(options), tree_(scene, LightTreeDirect::Competition::all) {
     if (ResampledDirect::suits(scene)) few_lights_.emplace(scene);
-    if (!options.images) return;
-    for (const MirrorImages::Image& image : options.images->all())
+    if (!options_.images && !options_.is_direct_only)
+      options_.images = MirrorImages::of_relays(scene);
+    if (!options_.images) return;
+    for (const MirrorImages::Image& image : options_.images->all())
       lit_images_.emplace_back(*image.scene, LightTreeDirect::Competition::none);
   }
 

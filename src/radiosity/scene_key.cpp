@@ -120,6 +120,11 @@ uint64_t radiosity_scene_key(const Scene& scene) {
     for (const Vec3& axis : e.axes) h.add(axis);
     add_web(h, scene.webs[size_t(e.web)]);
   }
+  for (const LightRelay& r : scene.relays) {
+    for (const Vec3& p : r.outline) h.add(p);
+    h.add(r.normal);
+    h.add(r.reflectance);
+  }
   return h.value();
 }
 

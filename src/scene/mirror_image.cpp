@@ -164,8 +164,18 @@ void ImageMaker::add_materials() {
     copy.alpha_cutoff = m.alpha_cutoff;
   }
   out_.scene.materials.push_back(dark);
-  out_.scene.materials.push_back(scene_.materials[mirror_.material]);
-  out_.scene.materials.back().is_mirror_pane = true;
+  Material pane = mirror_.relayed ? Material() : scene_.materials[mirror_.material];
+  if (mirror_.relayed) {  // glass of index 1, whose tint is the same at every angle
+    pane.kind = MaterialKind::metallic_roughness;
+    pane.base_color.value = *mirror_.relayed;
+    pane.metallic.value = 0;
+    pane.transmission.value = 1;
+    pane.is_thin = true;
+    pane.ior = 1;
+  } else {
+    pane.is_mirror_pane = true;
+  }
+  out_.scene.materials.push_back(std::move(pane));
 }
 
 // Copies only the textures that the image still uses.
@@ -321,7 +331,8 @@ void ImageMaker::add_quad(uint32_t material, const std::array<Vec3, 4>& corners)
 // encloses the front by five sides of a box.
 void ImageMaker::add_wall() {
   const std::vector<Vec3>& outline = mirror_.outline;
-  const Box box = bounds(scene_);
+  Box box = bounds(scene_);
+  for (const Vec3& p : outline) box.grow(p);  // no geometry need stand in place of a relay
   const float size = box.diagonal();
   Vec3 middle;
   for (const Vec3& p : outline) middle = middle + p * (1 / float(outline.size()));

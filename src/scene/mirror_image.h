@@ -12,7 +12,7 @@
 
 namespace troffer {
 
-// One convex polygon of a mesh that mirrors on one side.
+// One convex polygon that mirrors on one side: part of a mesh, or a LightRelay.
 struct FlatMirror {
   Vec3 normal;                // unit, on the mirroring side
   float height = 0;           // height of the plane along the normal, m
@@ -20,6 +20,7 @@ struct FlatMirror {
   std::vector<Vec3> outline;  // convex, of either orientation
   uint32_t mesh = 0;
   uint32_t material = 0;
+  std::optional<Rgb> relayed;  // reflectance of a relay, which has neither mesh nor material
 
   float above(const Vec3& p) const { return dot(normal, p) - height; }
   Vec3 reflected(const Vec3& p) const { return p - normal * (2 * above(p)); }

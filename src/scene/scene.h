@@ -93,6 +93,14 @@ struct Camera {
 // Returns the same view as a perspective, at most 90° wide, for uses that know no fisheyes.
 Camera without_fisheye(Camera camera);
 
+// A flat mirror that reflects light from sources onto matte surfaces, and that no other ray meets:
+// Radiance's `mirror` with an alternate material. What viewers see in its place is other geometry.
+struct LightRelay {
+  std::vector<Vec3> outline;  // convex
+  Vec3 normal;                // unit, on the mirroring side
+  Rgb reflectance;            // at every angle
+};
+
 struct Scene {
   std::string file;  // as given on the command line
   // Position of our (0,0,0) in the file: zero unless the scene lies far from the file's origin,
@@ -108,6 +116,7 @@ struct Scene {
   std::vector<EnvironmentMap> environments;
   std::vector<LightWeb> webs;
   std::vector<Light> lights;
+  std::vector<LightRelay> relays;
   std::vector<Camera> cameras;
   std::vector<SensorGrid> grids;
   std::vector<DynamicGroup> dynamic_groups;

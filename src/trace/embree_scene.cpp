@@ -25,17 +25,21 @@ float coverage_at(const HitTest& test, uint32_t primitive, float u, float v) {
 }
 
 // Returns a number in [0,1) that is a hash of ray and triangle, so it does not depend on how often
-// or in which packet Embree asks. Rays must differ from sample to sample.
+// or in which packet Embree asks. Rays must differ from sample to sample. The ray is in the space
+// of the instance, so a ray along an axis of symmetry is the same in two instances of one mesh:
+// their numbers differ by the instance.
 float draw_of(const RTCFilterFunctionNArguments* args, unsigned i) {
   const auto bits = [](float f) { return uint64_t(std::bit_cast<uint32_t>(f)); };
   const auto pair = [&](float f, float g) { return bits(f) << 32 | bits(g); };
   RTCRayN* const ray = args->ray;
   const unsigned n = args->N;
-  const uint64_t hash =
+  uint64_t hash =
       hash_of(pair(RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i)),
               pair(RTCRayN_org_z(ray, n, i), RTCRayN_dir_x(ray, n, i)),
               pair(RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i)),
               uint64_t(RTCHitN_geomID(args->hit, n, i)) << 32 | RTCHitN_primID(args->hit, n, i));
+  const unsigned instance = RTCHitN_instID(args->hit, n, i, 0);
+  if (instance != RTC_INVALID_GEOMETRY_ID) hash = hash_combine(hash, instance);
   return unit_float(uint32_t(hash >> 32));
 }
 

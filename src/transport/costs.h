@@ -1,15 +1,15 @@
-// Costs of work in one unit: the time of one traced ray with the light that it brings. Choices
-// between ways of computing the same light compare such costs; they never measure time, so they are
-// the same on every machine. `bench/costs` measures the costs again.
+// Costs of work. The unit is the time of tracing one ray and adding the light that it finds.
+// Choices between ways of computing the same light compare such costs. They never measure time, so
+// they are the same on every machine. `bench/costs` measures the costs again.
 #pragma once
 
 #include "transport/batch.h"
 
 namespace troffer {
 
-// Each of these takes this share of the time of a ray.
+// Cost of one mask, of one facet in a mask, and of one point on a source.
 constexpr double cost_of_mask = 0.3, cost_of_mask_facet = 1.0 / 12, cost_of_point = 0.3;
-// A pair of a cluster or a hit with a source.
+// Cost of one pair of a cluster and a source, and of one pair of a hit and a source.
 constexpr double cost_of_cluster = 12, cost_of_pair = 0.15;
 
 // Returns the cost of counted rays and masks, in rays.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "base/merge_polygons.h"
 #include "base/random.h"
@@ -33,6 +32,7 @@ struct Candidate {
   FlatMirror mirror;
   std::vector<uint32_t> triangles;
   bool is_front = true;
+  uint32_t number = 0;  // among all candidates of the mesh: each has its own random numbers
   float area = 0;
   float light = 0;  // reflected flux
 };
@@ -120,13 +120,16 @@ void add_polygons(const PreparedScene& scene, uint32_t number, float least_area,
     const uint32_t p = merged.of_piece[t];
     if (p != no_polygon && number_of[p] >= 0) all[size_t(number_of[p])].triangles.push_back(t);
   }
+  uint32_t count = 0;
   for (Candidate& c : all) {
     bool is_flat = true;
     for (const uint32_t t : c.triangles)
       is_flat = is_flat && is_flat_at(mesh, mesh.triangles[t], c.mirror.normal);
     if (!is_flat) continue;
+    c.number = count++;
     out.push_back(c);
     out.push_back(std::move(c));
+    out.back().number = count++;
     out.back().is_front = false;
     out.back().mirror.normal = -out.back().mirror.normal;
   }
@@ -137,7 +140,8 @@ void set_plane(const PreparedScene& scene, FlatMirror& m) {
   Vec3 middle;
   for (const Vec3& p : m.outline) middle = middle + p * (1 / float(m.outline.size()));
   m.height = dot(m.normal, middle);
-  const Box box = bounds(scene.scene);
+  Box box = bounds(scene.scene);
+  for (const Vec3& p : m.outline) box.grow(p);
   float magnitude = 0;
   for (size_t a = 0; a < 3; ++a)
     magnitude = std::max({magnitude, std::abs(box.lower[a]), std::abs(box.upper[a])});
@@ -167,7 +171,7 @@ float light_from(const PreparedScene& scene, const Candidate& c, float share) {
     Walk walk;
     walk.index = i;
     walk.sample = i;
-    walk.stream = hash_of(stream::mirror_light, c.mirror.mesh);
+    walk.stream = hash_of(stream::mirror_light, c.mirror.mesh, c.number);
     wave.walks.push_back(walk);
     wave.vertices.push_back(make_sensor_vertex(p, c.mirror.normal, c.mirror.tolerance));
     wave.bsdfs.push_back(white);
@@ -184,8 +188,12 @@ float light_from(const PreparedScene& scene, const Candidate& c, float share) {
   return std::isfinite(sum) ? sum * c.area * share : 0;
 }
 
-std::vector<Candidate> best_of(const PreparedScene& scene) {
+std::vector<Candidate> best_of(const PreparedScene& scene, const std::vector<bool>& is_broad) {
   std::vector<Candidate> all;
+  bool is_any = false;
+  for (size_t i = 0; i < scene.primitives.size(); ++i)
+    is_any = is_any || !is_broad[scene.primitives[i].light];
+  if (!is_any) return all;
   const float least_area = least_area_of_scene * sqr(bounds(scene.scene).diagonal());
   for (uint32_t m = 0; m < scene.scene.meshes.size(); ++m)
     if (mirrored_share(scene, scene.scene.meshes[m].material) >= least_reflectance)
@@ -211,12 +219,11 @@ std::vector<Candidate> best_of(const PreparedScene& scene) {
 std::shared_ptr<const MirrorImages> MirrorImages::make(const PreparedScene& scene) {
   auto images = std::make_shared<MirrorImages>();
   images->of_triangle_.resize(scene.scene.meshes.size());
+  if (scene.primitives.size() == 0) return nullptr;
+  images->add_relays(scene);
   const std::vector<bool> is_broad = broad_lights(scene);
-  const auto is_light = [&](uint32_t p) { return !is_broad[scene.primitives[p].light]; };
-  const auto primitives = std::views::iota(0u, uint32_t(scene.primitives.size()));
-  if (std::none_of(primitives.begin(), primitives.end(), is_light)) return nullptr;
   size_t triangles = 0;
-  for (Candidate& c : best_of(scene)) {
+  for (Candidate& c : best_of(scene, is_broad)) {
     std::optional<MirrorImage> made = mirror_image_of(scene.scene, c.mirror, is_broad);
     if (!made || made->lights.empty()) continue;
     triangles += triangle_count(made->scene);
@@ -225,14 +232,37 @@ std::shared_ptr<const MirrorImages> MirrorImages::make(const PreparedScene& scen
     of_triangle.resize(scene.scene.meshes[c.mirror.mesh].triangles.size(), {-1, -1});
     for (const uint32_t t : c.triangles)
       of_triangle[t][c.is_front ? 0 : 1] = int32_t(images->images_.size());
-    Image& image = images->images_.emplace_back();
-    image.mirror = c.mirror;
-    image.shows.assign(scene.scene.lights.size(), false);
-    for (const uint32_t l : made->lights) image.shows[l] = true;
-    image.scene = std::make_unique<const PreparedScene>(std::move(made->scene));
+    images->add(scene, c.mirror, std::move(*made));
   }
   if (images->images_.empty()) return nullptr;
   return images;
+}
+
+std::shared_ptr<const MirrorImages> MirrorImages::of_relays(const PreparedScene& scene) {
+  if (scene.scene.relays.empty() || scene.primitives.size() == 0) return nullptr;
+  auto images = std::make_shared<MirrorImages>();
+  images->add_relays(scene);
+  return images->images_.empty() ? nullptr : images;
+}
+
+void MirrorImages::add_relays(const PreparedScene& scene) {
+  for (const LightRelay& r : scene.scene.relays) {
+    FlatMirror mirror;
+    mirror.outline = r.outline;
+    mirror.normal = r.normal;
+    mirror.relayed = r.reflectance;
+    set_plane(scene, mirror);
+    std::optional<MirrorImage> made = mirror_image_of(scene.scene, mirror);
+    if (made && !made->lights.empty()) add(scene, mirror, std::move(*made));
+  }
+}
+
+void MirrorImages::add(const PreparedScene& scene, const FlatMirror& mirror, MirrorImage made) {
+  Image& image = images_.emplace_back();
+  image.mirror = mirror;
+  image.shows.assign(scene.scene.lights.size(), false);
+  for (const uint32_t l : made.lights) image.shows[l] = true;
+  image.scene = std::make_unique<const PreparedScene>(std::move(made.scene));
 }
 
 int32_t MirrorImages::at(const Vertex& v) const {

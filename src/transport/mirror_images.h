@@ -24,10 +24,12 @@ class MirrorImages {
     std::vector<bool> shows;  // per light of the original scene
   };
 
-  // Returns the images of the few mirrors that reflect the most light; null if no mirror reflects
-  // any. A mirror is a flat part of a mesh with strong, uniform, perfectly smooth reflection and no
-  // transmission. Deterministic.
+  // Returns the images of all relays (scene/scene.h) and of the few mirrors that reflect the most
+  // light; null if there are none. A mirror is a flat part of a mesh with strong, uniform,
+  // perfectly smooth reflection and no transmission. Deterministic.
   static std::shared_ptr<const MirrorImages> make(const PreparedScene& scene);
+  // Returns the images of relays alone, for integrators whose rays find light in mirrors.
+  static std::shared_ptr<const MirrorImages> of_relays(const PreparedScene& scene);
 
   const std::vector<Image>& all() const { return images_; }
   // Returns the index of the image that a ray sees which is mirrored at v, or -1.
@@ -48,6 +50,9 @@ class MirrorImages {
   }
 
  private:
+  void add_relays(const PreparedScene& scene);
+  void add(const PreparedScene& scene, const FlatMirror& mirror, MirrorImage made);
+
   // Per mesh, empty or per triangle: index of the image of its polygon, for front and back; -1 if
   // there is none.
   std::vector<std::vector<std::array<int32_t, 2>>> of_triangle_;

@@ -12,6 +12,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_absorption {
+
 namespace {
 
 // Returns the mean of a picture of 16 × 16 pixels.
@@ -202,3 +204,5 @@ TEST_CASE(
     CHECK(both == doctest::Approx(0.5).epsilon(0.02));
   }
 }
+
+}  // namespace test_absorption

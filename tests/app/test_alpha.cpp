@@ -16,6 +16,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_alpha {
+
 namespace {
 
 constexpr double alpha = 0.3;
@@ -144,3 +146,5 @@ TEST_CASE("masks of other formats leave the same share") {
       "<rgb name='reflectance' value='0'/></bsdf></bsdf></bsdf></shape></scene>";
   check_measured(measure("s.xml", mitsuba, {}), lights[0], 1 - alpha);
 }
+
+}  // namespace test_alpha

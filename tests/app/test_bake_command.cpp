@@ -12,6 +12,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_bake_command {
+
 TEST_CASE("bake writes the scene with its light, the same for any number of threads") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
@@ -80,3 +82,5 @@ TEST_CASE("a signal stops baking, and nothing is left behind") {
   CHECK(f.seconds_after_signal < 5);
   CHECK(folder.names() == std::vector<std::string>{"room.pbrt"});
 }
+
+}  // namespace test_bake_command

@@ -18,6 +18,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_cie171 {
+
 namespace {
 
 constexpr double allowed = 0.005;
@@ -346,3 +348,5 @@ TEST_CASE("CIE 171, 5.9 to 5.14: sky and ground through openings, clear and obst
   }
   for (const SkyCase& c : cases) check_skies(c, types);
 }
+
+}  // namespace test_cie171

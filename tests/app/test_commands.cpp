@@ -10,6 +10,8 @@
 
 using namespace troffer;
 using namespace troffer::test;
+
+namespace test_commands {
 using Json = nlohmann::json;
 
 namespace {
@@ -391,3 +393,5 @@ TEST_CASE("options that the method does not use are named in a warning") {
   CHECK(f.status == 0);
   CHECK(f.remarks() == "warning: --depth belongs to --method path; certified does not use it\n");
 }
+
+}  // namespace test_commands

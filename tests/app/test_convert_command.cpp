@@ -15,6 +15,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_convert_command {
+
 namespace {
 
 const std::vector<std::string> targets{"out.gltf", "out.glb", "out.pbrt"};
@@ -256,3 +258,5 @@ TEST_CASE("a convert that fails or is killed leaves the old file with its old da
       for (const auto& [name, bytes] : before) CHECK(now.at(name) == bytes);
   }
 }
+
+}  // namespace test_convert_command

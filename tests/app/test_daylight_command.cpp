@@ -13,6 +13,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_daylight_command {
+
 namespace {
 
 const char* const plain_obj =
@@ -380,3 +382,5 @@ TEST_CASE("an hour of a weather file gives the Perez sky and the sun of that pla
   CHECK(status({"--weather", file, "--date", "06-21T11:30", "--sky", "clear"}) == 2);
   CHECK(status({"--weather", folder.write("no.epw", "hello\n"), "--date", "06-21T11:30"}) == 1);
 }
+
+}  // namespace test_daylight_command

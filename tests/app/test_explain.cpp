@@ -9,6 +9,8 @@
 
 using namespace troffer::test;
 
+namespace test_explain {
+
 namespace {
 
 nlohmann::json plan_of(const Folder& folder, std::vector<std::string> options, std::string& err) {
@@ -87,3 +89,5 @@ TEST_CASE("--stats counts the rays of cells and gathers apart from those of the 
   CHECK(none["preparation"]["extension_rays"] == 0);
   CHECK(none["preparation"]["shadow_rays"] == 0);
 }
+
+}  // namespace test_explain

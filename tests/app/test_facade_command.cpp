@@ -15,6 +15,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_facade_command {
+
 namespace {
 
 constexpr double diffuse = 0.2, straight = 0.5;
@@ -155,3 +157,5 @@ TEST_CASE("glare rates a view of a bright square") {
   CHECK(text.out.starts_with("DGP "));
   CHECK(run_program(folder, {"glare", folder.path("s.rad"), "--quiet"}).status == 2);
 }
+
+}  // namespace test_facade_command

@@ -11,6 +11,8 @@
 
 using namespace troffer::test;
 
+namespace test_failures {
+
 namespace {
 
 // Expects exactly one line on standard error, `error: …`, and nothing on standard output.
@@ -253,3 +255,5 @@ TEST_CASE("printing to a full disk is a failure") {
   CHECK(WEXITSTATUS(std::system(command.c_str())) == 1);
   CHECK(read_file(folder.path("err")).rfind("error: ", 0) == 0);
 }
+
+}  // namespace test_failures

@@ -14,6 +14,8 @@
 
 using namespace troffer;
 using namespace troffer::test;
+
+namespace test_far_from_origin {
 using Json = nlohmann::json;
 
 namespace {
@@ -232,3 +234,5 @@ TEST_CASE("a radiosity solution and its picture in glTF move with the scene") {
   CHECK(box[0][0].get<double>() == doctest::Approx(4997).epsilon(1e-7));
   CHECK(box[1][1].get<double>() == doctest::Approx(5003).epsilon(1e-7));
 }
+
+}  // namespace test_far_from_origin

@@ -13,6 +13,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_hostile_daylight {
+
 namespace {
 
 // Scales, then moves.
@@ -152,3 +154,5 @@ TEST_CASE(
   // A slat's shadow hides .5 % of what paths find, and the estimated errors do not include it.
   check_agreement({"--environment", folder.write("hot.pfm", pfm)}, {}, 4e-3);
 }
+
+}  // namespace test_hostile_daylight

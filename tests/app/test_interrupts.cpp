@@ -10,6 +10,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_interrupts {
+
 TEST_CASE("SIGINT and SIGTERM stop a long render, which writes its unfinished picture") {
   for (const int which : {SIGINT, SIGTERM})
     for (const std::string method : {"certified", "path", "fixed"}) {
@@ -92,3 +94,5 @@ TEST_CASE("an existing output is only replaced by a complete one") {
   CHECK(run_program(folder, {"render", good, "-o", out}).status == 0);
   CHECK(read_image(out).width == 40);
 }
+
+}  // namespace test_interrupts

@@ -13,6 +13,8 @@
 
 using namespace troffer::test;
 
+namespace test_kills {
+
 namespace {
 
 struct Killed {
@@ -86,3 +88,5 @@ TEST_CASE("kill -9 at random moments leaves checkpoint and output intact, by eve
   MESSAGE(all.kills << " kills; after " << all.kept << " a checkpoint was there, " << all.finished
                     << " runs ended before theirs");
 }
+
+}  // namespace test_kills

@@ -12,6 +12,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_kj92_command {
+
 namespace {
 
 // Returns the number after "name": in a JSON file; -1 if missing.
@@ -192,3 +194,5 @@ TEST_CASE("kj92: SIGINT leaves a picture during rendering and nothing during rad
             std::string::npos);
     }
 }
+
+}  // namespace test_kj92_command

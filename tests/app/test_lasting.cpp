@@ -17,6 +17,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_lasting {
+
 namespace {
 
 using Words = std::vector<std::string>;
@@ -307,3 +309,5 @@ TEST_CASE("half-written files of killed programs are removed, files of others ar
   CHECK(folder.names() == Words{names[1], names[2], names[3], "o.pfm", "room.pbrt"});
   close(held);
 }
+
+}  // namespace test_lasting

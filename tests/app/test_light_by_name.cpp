@@ -15,6 +15,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_light_by_name {
+
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -239,3 +241,5 @@ TEST_CASE("surfaces that are dim beside lamps cause a warning, and --emission-sc
   CHECK(scaled.at("spare") == doctest::Approx(as_is.at("spare")));
   for (const char* bad : {"-1", "x", "1e12"}) CHECK(measure({"--emission-scale", bad}).status == 2);
 }
+
+}  // namespace test_light_by_name

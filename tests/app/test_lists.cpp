@@ -11,6 +11,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_lists {
+
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -162,3 +164,5 @@ TEST_CASE("report reads surfaces from a table as well as from JSON") {
               .status == 1);
   }
 }
+
+}  // namespace test_lists

@@ -13,6 +13,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_luminaire_command {
+
 namespace {
 
 // Intensities of 1000 cos^n cd, every degree from the nadir.
@@ -289,3 +291,5 @@ TEST_CASE("points with a radius light the same surfaces, with soft shadows") {
   // half of the sphere is visible
   CHECK(soft[1].lx == doctest::Approx(hard[1].lx * .53).epsilon(.03));
 }
+
+}  // namespace test_luminaire_command

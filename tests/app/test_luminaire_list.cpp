@@ -12,6 +12,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_luminaire_list {
+
 namespace {
 
 // A uniform point of 100 cd downward, 200 π lm.
@@ -144,3 +146,5 @@ TEST_CASE("weather files: quoted names and hours without data") {
                                           "--at", "-33.95,151.18,2024-02-29T12:30+10:00"});
   CHECK(contains(f.err, "has no row for 02-29T12:30"));
 }
+
+}  // namespace test_luminaire_list

@@ -15,6 +15,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_luminous_openings {
+
 namespace {
 
 // Points, each with its normal times the area that it stands for.
@@ -186,3 +188,5 @@ TEST_CASE("certified: the light of half-hidden measured openings agrees with ray
   CHECK(chi2 < 1.5);
   CHECK(hidden > 3);  // points in the board's shadow
 }
+
+}  // namespace test_luminous_openings

@@ -13,6 +13,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_memory {
+
 namespace {
 
 // A bent and rough surface of 2 n² triangles, none of them coplanar with a neighbour.
@@ -144,3 +146,5 @@ TEST_CASE("a small address space is enough") {
   }
 #endif
 }
+
+}  // namespace test_memory

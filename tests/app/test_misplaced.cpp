@@ -10,6 +10,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_misplaced {
+
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -131,3 +133,5 @@ TEST_CASE("open scenes, and arrangements that only look odd, cause no warning") 
   // A point on a façade under the sky.
   CHECK(t.warnings(plane, "", "0,0,2,0,1,0\n", {"--sky", "overcast"}).empty());
 }
+
+}  // namespace test_misplaced

@@ -17,6 +17,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_mutated_readers {
+
 TEST_CASE("four thousand mutated weather files are read completely or refused") {
   const Folder folder;
   std::string epw =
@@ -65,3 +67,5 @@ TEST_CASE("directions that are too short are refused") {
   AssessmentOptions options;
   CHECK_THROWS_AS(read_report_file(surface, options), InputError);
 }
+
+}  // namespace test_mutated_readers

@@ -8,6 +8,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_no_light {
+
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -116,3 +118,5 @@ TEST_CASE("the power of luminaires has no effect on their light") {
   CAPTURE(f.err);
   CHECK(f.status == 0);
 }
+
+}  // namespace test_no_light

@@ -14,6 +14,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_one_scene {
+
 namespace {
 
 const std::string hall = std::string(TROFFER_SOURCE_DIR) + "/scenes/modern-hall/modern-hall";
@@ -211,3 +213,5 @@ TEST_CASE("modern-hall gives the same picture from pbrt, glTF, Mitsuba and conve
                is_gltf ? 0.04 : 0.008);
   }
 }
+
+}  // namespace test_one_scene

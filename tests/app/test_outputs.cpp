@@ -12,6 +12,8 @@
 
 using namespace troffer::test;
 
+namespace test_outputs {
+
 namespace {
 
 void limit_files_to(rlim_t bytes) {
@@ -128,3 +130,5 @@ TEST_CASE("a second signal during writing leaves no temporary file") {
   CHECK(program.wait().status == 130);
   CHECK(folder.names() == std::vector<std::string>{"empty.pbrt"});
 }
+
+}  // namespace test_outputs

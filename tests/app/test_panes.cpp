@@ -16,6 +16,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_panes {
+
 namespace {
 
 // A pane, 1 km wide, at a given height.
@@ -183,3 +185,5 @@ TEST_CASE(
   }
   CHECK(means[1] == doctest::Approx(means[0]).epsilon(0.02));
 }
+
+}  // namespace test_panes

@@ -9,6 +9,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_plain_numbers {
+
 namespace {
 
 // Returns the normalized text, or "!" and the reason if it is refused.
@@ -82,3 +84,5 @@ TEST_CASE("all commands refuse numbers that would overflow and words that are no
     CHECK(f.error_lines().size() == 1);
   }
 }
+
+}  // namespace test_plain_numbers

@@ -10,6 +10,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_portal_command {
+
 namespace {
 
 const char* const points =
@@ -165,3 +167,5 @@ TEST_CASE("several portals each let in their own light, none twice") {
   CHECK(is_told(2.1));
   CHECK(!is_told(1.9));
 }
+
+}  // namespace test_portal_command

@@ -14,6 +14,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_preview {
+
 namespace {
 
 float mean(const Image& image) {
@@ -134,3 +136,5 @@ TEST_CASE("a preview is written before images are read and does not change the r
   REQUIRE(run_program(folder, previewed).status == 0);
   CHECK(read_file(folder.path("a.pfm")) == read_file(folder.path("b.pfm")));
 }
+
+}  // namespace test_preview

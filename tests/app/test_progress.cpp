@@ -13,6 +13,8 @@
 
 using namespace troffer;
 
+namespace test_progress {
+
 namespace {
 
 // Redirects standard error to a pseudo-terminal for its lifetime.
@@ -121,3 +123,5 @@ TEST_CASE("without a terminal each long phase prints a single line") {
         std::string::npos);
   CHECK(std::count(all.begin(), all.end(), '\n') == 2);
 }
+
+}  // namespace test_progress

@@ -12,6 +12,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_radiosity_command {
+
 namespace {
 
 std::vector<uint8_t> bytes_of(const std::string& path) {
@@ -139,3 +141,5 @@ TEST_CASE("radiosity stops at a signal and writes its unfinished solution intact
   CHECK(troffer::test::read_file(folder.path("s.json")).find("\"is_complete\": false") !=
         std::string::npos);
 }
+
+}  // namespace test_radiosity_command

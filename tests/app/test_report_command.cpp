@@ -11,6 +11,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_report_command {
+
 namespace {
 
 // A closed room of 4 × 3 × 2.5 m with a table top of 1.4 × .8 m and a panel of 1 m².
@@ -298,3 +300,5 @@ TEST_CASE("a signal ends report with nothing written") {
   CHECK(f.err.find("nothing was written") != std::string::npos);
   for (const std::string& name : folder.names()) CHECK(name != "r");
 }
+
+}  // namespace test_report_command

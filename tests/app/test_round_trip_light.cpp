@@ -16,6 +16,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_round_trip_light {
+
 namespace {
 
 const StopFlag never_stop = false;
@@ -190,3 +192,5 @@ TEST_CASE("a scene that is converted without a warning looks the same") {
   }
   CHECK(compared >= 16);
 }
+
+}  // namespace test_round_trip_light

@@ -14,6 +14,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_same_files {
+
 namespace {
 
 using Words = std::vector<std::string>;
@@ -172,3 +174,5 @@ TEST_CASE("links are kept: dangling, chained and to other folders; loops are err
     CHECK(fs::is_symlink(in.path(name)));
   }
 }
+
+}  // namespace test_same_files

@@ -11,6 +11,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_solution_command {
+
 namespace {
 
 std::vector<std::string> render_of(const Folder& folder, const std::string& scene,
@@ -171,3 +173,5 @@ TEST_CASE("radiosity --cells computes cells of all surfaces for any view, also u
   CHECK(run_program(folder, {"radiosity", scene, "--cells", "-o", folder.path("a.gltf")}).status ==
         2);
 }
+
+}  // namespace test_solution_command

@@ -16,6 +16,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_stops {
+
 namespace {
 
 using Words = std::vector<std::string>;
@@ -238,3 +240,5 @@ TEST_CASE("a time limit at any moment leaves a picture without black pixels") {
                        [](const Rgb& p) { return p.is_black(); }));
   }
 }
+
+}  // namespace test_stops

@@ -16,6 +16,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_thin_glass {
+
 namespace {
 
 const char* const black_floor =
@@ -147,3 +149,5 @@ TEST_CASE("a pane reflects the room in front of it without noise at 4 viewing ra
       CHECK(double(p.g) == doctest::Approx(expected).epsilon(0.06));
   }
 }
+
+}  // namespace test_thin_glass

@@ -8,6 +8,8 @@
 
 using namespace troffer::test;
 
+namespace test_up_option {
+
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -135,3 +137,5 @@ TEST_CASE("every command that loads a scene accepts --up") {
   CHECK(run_program(folder, {"info", scene, "--up", "zz"}).err ==
         "error: --up: cannot read 'zz': write an axis, such as z or -y, or x,y,z\n");
 }
+
+}  // namespace test_up_option

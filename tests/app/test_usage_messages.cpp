@@ -9,6 +9,8 @@
 
 using namespace troffer::test;
 
+namespace test_usage_messages {
+
 namespace {
 
 struct Mistake {
@@ -228,3 +230,5 @@ TEST_CASE("every option of every command has a group and a value name") {
       CHECK(group["name"] != "Other");  // if this fails, add the option to app/option_table.cpp
     }
 }
+
+}  // namespace test_usage_messages

@@ -11,6 +11,8 @@
 
 using namespace troffer::test;
 
+namespace test_view_command {
+
 TEST_CASE("view prints its address, and a signal ends it") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
@@ -98,3 +100,5 @@ TEST_CASE("view refuses what it cannot show before it opens a page") {
   CHECK(run({scene, "--method", "magic"}) == 2);
   CHECK(run({scene, "--at", "48,16,yesterday"}) == 2);
 }
+
+}  // namespace test_view_command

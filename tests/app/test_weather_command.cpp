@@ -12,6 +12,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_weather_command {
+
 namespace {
 
 // EnergyPlus' data dictionary, "EnergyPlus Weather File": fields 14 to 16 of a row are global
@@ -178,3 +180,5 @@ TEST_CASE("--at names the part that is wrong") {
                            "48.2,16.4,2026-06-21T12:00+02"})
     CHECK(measured(run(same))[0].lx == doctest::Approx(lx));
 }
+
+}  // namespace test_weather_command

@@ -17,6 +17,8 @@
 
 using namespace troffer;
 using namespace troffer::test;
+
+namespace test_baked_gltf {
 using nlohmann::json;
 
 namespace {
@@ -275,3 +277,5 @@ TEST_CASE("hostile meshes are baked or left dark, and nothing worse") {
     CHECK(triangle_count(import_scene(folder.path("bad.gltf"))) > 0);
   }
 }
+
+}  // namespace test_baked_gltf

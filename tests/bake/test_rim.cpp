@@ -12,6 +12,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_rim {
+
 namespace {
 
 const StopFlag never_stop = false;
@@ -169,3 +171,5 @@ TEST_CASE(
           doctest::Approx(right.values[i].illuminance_lx).epsilon(0.08));
   }
 }
+
+}  // namespace test_rim

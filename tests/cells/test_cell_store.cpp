@@ -12,6 +12,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_cell_store {
+
 namespace {
 
 constexpr uint64_t key = 77;
@@ -204,3 +206,5 @@ TEST_CASE("impossible values are refused even if the file is complete") {
                 s.rows.finish(1);
               }).empty());
 }
+
+}  // namespace test_cell_store

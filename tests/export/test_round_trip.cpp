@@ -17,6 +17,8 @@
 
 using namespace troffer;
 
+namespace test_round_trip {
+
 namespace {
 
 const std::string world = R"(
@@ -444,3 +446,5 @@ TEST_CASE("instances stay instances in every format") {
     }
   }
 }
+
+}  // namespace test_round_trip

@@ -20,6 +20,8 @@
 #include "image/read_image.h"
 
 using namespace troffer;
+
+namespace test_outputs {
 using test::TemporaryFolder;
 
 namespace {
@@ -178,3 +180,5 @@ TEST_CASE("a process that a signal ends takes its half-written files with it") {
   CHECK(folder.entries() == 2);
   CHECK(text_of(folder.path("mine.csv")) == "mine");
 }
+
+}  // namespace test_outputs

@@ -12,6 +12,8 @@
 
 using namespace troffer;
 
+namespace test_tga_webp {
+
 namespace {
 
 using Bytes = std::vector<uint8_t>;
@@ -129,3 +131,5 @@ TEST_CASE("WebP: without loss, with alpha; damaged files are errors or pictures"
     why_rejected(bad);
   }
 }
+
+}  // namespace test_tga_webp

@@ -17,6 +17,8 @@
 
 using namespace troffer;
 
+namespace test_badinputs {
+
 namespace {
 
 // Files for which we disagree with the label, and why.
@@ -104,3 +106,5 @@ TEST_CASE("OBJ, PLY and pbrt files of other projects load or fail as expected") 
   const size_t count = check_all({"obj", "ply", "pbrt"});
   CHECK((count == 0 || count > 50));
 }
+
+}  // namespace test_badinputs

@@ -10,6 +10,8 @@
 
 using namespace troffer;
 
+namespace test_emissive {
+
 namespace {
 
 Mesh mesh_of(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
@@ -267,3 +269,5 @@ TEST_CASE("large emissive meshes take near-linear time, and polygons are limited
   CHECK(fan.lights.size() == 1);
   CHECK(seconds < 5);
 }
+
+}  // namespace test_emissive

@@ -8,6 +8,8 @@
 
 using namespace troffer;
 
+namespace test_gltf {
+
 namespace {
 
 const std::string plain_material = "'materials':[{}]";
@@ -266,3 +268,5 @@ TEST_CASE("modern-hall: thirteen sources, three textures, glass") {
   // triangles without area, and six meshes wound against their normals
   CHECK(scene.warnings.entries().size() <= 2);
 }
+
+}  // namespace test_gltf

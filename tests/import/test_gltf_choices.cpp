@@ -4,7 +4,9 @@
 
 #include "import/gltf_builder.h"
 
-namespace troffer {
+using namespace troffer;
+
+namespace test_gltf_choices {
 
 namespace {
 
@@ -128,4 +130,4 @@ TEST_CASE("variants: the chosen one's materials, or a list of names") {
                        "--variant: the scene has no variant 'elm', but oak, ash", UsageError);
 }
 
-}  // namespace troffer
+}  // namespace test_gltf_choices

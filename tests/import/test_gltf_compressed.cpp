@@ -11,6 +11,8 @@
 
 using namespace troffer;
 
+namespace test_gltf_compressed {
+
 namespace {
 
 std::string as_string(const std::vector<unsigned char>& bytes) {
@@ -295,3 +297,5 @@ TEST_CASE("EXT_texture_webp is preferred; for KTX images the plain fallback is s
   CHECK(texture_of("{'source':1,'extensions':{'KHR_texture_basisu':{'source':2}}}").width == 1);
   CHECK(texture_of("{'extensions':{'KHR_texture_basisu':{'source':2}}}").width == 0);
 }
+
+}  // namespace test_gltf_compressed

@@ -5,6 +5,8 @@
 
 using namespace troffer;
 
+namespace test_gltf_data {
+
 namespace {
 
 std::string u32(uint32_t v) {
@@ -300,3 +302,5 @@ TEST_CASE("vertices that are not finite, and normals without direction") {
   CHECK(scene.warnings.entries()[0].count == 3);
   CHECK(scene.warnings.entries()[1].count == 1);
 }
+
+}  // namespace test_gltf_data

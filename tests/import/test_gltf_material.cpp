@@ -8,6 +8,8 @@
 
 using namespace troffer;
 
+namespace test_gltf_material {
+
 namespace {
 
 Scene with_material(const std::string& material, const std::string& more = "") {
@@ -353,3 +355,5 @@ TEST_CASE("a thin body is a sheet and keeps its film, also if it absorbs") {
     CHECK(scene.materials.at(scene.meshes[0].material).iridescence.value == 1);
   }
 }
+
+}  // namespace test_gltf_material

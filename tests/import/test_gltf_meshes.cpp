@@ -7,6 +7,8 @@
 
 using namespace troffer;
 
+namespace test_gltf_meshes {
+
 namespace {
 
 // An accessor that square_with() adds after the square's four. Their data follows in `bytes`,
@@ -206,3 +208,5 @@ TEST_CASE("COLOR_0 of a textured mesh is a factor on what its texture shows") {
   CHECK(two.materials[two.meshes.at(0).material].base_color.value.g == doctest::Approx(1.0 / 6));
   CHECK(has_warning(two, "as their mean"));
 }
+
+}  // namespace test_gltf_meshes

@@ -20,6 +20,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_hbjson {
+
 namespace {
 
 Scene import_text(const std::string& text, const std::map<std::string, size_t>& states = {}) {
@@ -320,3 +322,5 @@ TEST_CASE("four hundred mutated models are read or refused") {
       R"({"type":"Glass","identifier":"a","r_transmissivity":0.5},{"type":"Trans","identifier":"b"},)";
   check_mutations(room.text(), 400, [](const std::string& text) { import_text(text); });
 }
+
+}  // namespace test_hbjson

@@ -18,6 +18,8 @@
 
 using namespace troffer;
 
+namespace test_images_ahead {
+
 namespace {
 
 // A scene of `count` materials with an image each. The fourth image is missing; the sixth is not an
@@ -224,3 +226,5 @@ TEST_CASE("image lights are left out with the other images") {
     CHECK(import_scene(path).lights.size() == 1);
   }
 }
+
+}  // namespace test_images_ahead

@@ -17,6 +17,8 @@
 
 using namespace troffer;
 
+namespace test_import_common {
+
 namespace {
 
 std::string text_of(const std::vector<uint8_t>& bytes) {
@@ -257,3 +259,5 @@ TEST_CASE("images that do not fit into memory together are reduced, down to one 
   CHECK(scene.textures.at(b).width == 1);
   CHECK(scene.textures[b].texels_float == std::vector<float>{0.5f, 0, 0.5f});
 }
+
+}  // namespace test_import_common

@@ -15,6 +15,8 @@
 #include "support/instanced_scenes.h"
 
 using namespace troffer;
+
+namespace test_instances {
 using troffer::test::dented_ball;
 
 namespace {
@@ -273,3 +275,5 @@ TEST_CASE("shape groups of Mitsuba, also nested ones, are stored once") {
     check_same(scene, copies, 0);
   }
 }
+
+}  // namespace test_instances

@@ -8,6 +8,8 @@
 
 using namespace troffer;
 
+namespace test_json_limits {
+
 namespace {
 
 std::string repeated(const std::string& part, size_t count) {
@@ -83,3 +85,5 @@ TEST_CASE("a glTF file with too many levels is an error with its place") {
   CHECK(e.line() == 3);
   CHECK(e.column() == 200);
 }
+
+}  // namespace test_json_limits

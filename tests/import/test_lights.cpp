@@ -19,6 +19,8 @@
 
 using namespace troffer;
 
+namespace test_lights {
+
 namespace {
 
 Scene import_world(const std::string& world) {
@@ -471,3 +473,5 @@ TEST_CASE("--light-radius turns points and spots into spheres with the same ligh
   CHECK(s.lights[2].kind == LightKind::distant);
   CHECK(s.spheres[1].light == 1);
 }
+
+}  // namespace test_lights

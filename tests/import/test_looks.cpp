@@ -12,6 +12,8 @@
 
 using namespace troffer;
 
+namespace test_looks {
+
 namespace {
 
 Scene import_as(const std::string& name, const std::string& text) {
@@ -209,3 +211,5 @@ TEST_CASE("visibility of back sides, by format") {
       xml("<bsdf type='mask'><float name='opacity' value='.7'/><bsdf type='conductor'/></bsdf>") ==
       BackFaces::black);
 }
+
+}  // namespace test_looks

@@ -15,6 +15,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_luminaire {
+
 namespace {
 
 // Returns a diffuse disc of 1000 cd, which is 1000 pi lm.
@@ -339,3 +341,5 @@ TEST_CASE(
     CHECK(s.lights[0].is_two_sided == is_two_sided);
   }
 }
+
+}  // namespace test_luminaire

@@ -9,6 +9,8 @@
 
 using namespace troffer;
 
+namespace test_luminous_opening {
+
 namespace {
 
 using Shape = OpeningBody::Shape;
@@ -116,3 +118,5 @@ TEST_CASE("a face shines if more than a thousandth of the light leaves through i
     CHECK(shines_towards(web, {std::cos(turn), std::sin(turn), 0}));
   CHECK_FALSE(shines_towards(web, {0, 0, -1}));
 }
+
+}  // namespace test_luminous_opening

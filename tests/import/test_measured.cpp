@@ -16,6 +16,8 @@
 
 using namespace troffer;
 
+namespace test_measured {
+
 namespace {
 
 template <class T>
@@ -156,3 +158,5 @@ TEST_CASE("missing or invalid measured files are shown grey, with one warning") 
     CHECK(any.material.roughness.value <= 1);
   }
 }
+
+}  // namespace test_measured

@@ -14,6 +14,8 @@
 
 using namespace troffer;
 
+namespace test_mitsuba {
+
 namespace {
 
 Scene import_world(const std::string& world, const std::string& version = "3.0.0") {
@@ -323,3 +325,5 @@ TEST_CASE("mutated files load or are refused") {
     import_mitsuba(folder.write("scene.xml", changed));
   });
 }
+
+}  // namespace test_mitsuba

@@ -16,6 +16,8 @@
 
 using namespace troffer;
 
+namespace test_mitsuba_data {
+
 namespace {
 
 Scene import_bsdf(const std::string& bsdf, const std::string& version = "3.0.0") {
@@ -242,3 +244,5 @@ TEST_CASE("serialized meshes that are broken are refused") {
     for (const size_t index : {0, 1, 2}) read(changed, index);
   });
 }
+
+}  // namespace test_mitsuba_data

@@ -19,6 +19,8 @@
 
 using namespace troffer;
 
+namespace test_mitsuba_definitions {
+
 namespace {
 
 std::string scene_of(const std::string& world, const std::string& version = "3.0.0") {
@@ -272,3 +274,5 @@ TEST_CASE("the base of rough plastic is tinted once unless nonlinear") {
     CHECK(rho / (1 - rho * f) == doctest::Approx(double(0.5f / (1 - f))).epsilon(1e-4));
   }
 }
+
+}  // namespace test_mitsuba_definitions

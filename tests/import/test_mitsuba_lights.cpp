@@ -15,6 +15,8 @@
 
 using namespace troffer;
 
+namespace test_mitsuba_lights {
+
 namespace {
 
 std::string scene_of(const std::string& world, const std::string& version = "3.0.0") {
@@ -213,3 +215,5 @@ TEST_CASE("files are looked up in the folders of <path>, never outside of the sc
   CHECK(has_warning(world("../parts"), "leads out of"));
   CHECK(has_warning(world("elsewhere"), "t.bmp"));
 }
+
+}  // namespace test_mitsuba_lights

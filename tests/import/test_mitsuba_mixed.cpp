@@ -13,6 +13,8 @@
 
 using namespace troffer;
 
+namespace test_mitsuba_mixed {
+
 namespace {
 
 Scene import_bsdf(const std::string& bsdf) {
@@ -186,3 +188,5 @@ TEST_CASE("principled: zero values cause no warning, anisotropy is supported") {
   CHECK(double(sqr(m.roughness.value)) == doctest::Approx(across));
   CHECK(across + (1 - across) * double(sqr(m.anisotropy.value)) == doctest::Approx(along));
 }
+
+}  // namespace test_mitsuba_mixed

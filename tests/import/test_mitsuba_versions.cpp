@@ -13,6 +13,8 @@
 
 using namespace troffer;
 
+namespace test_mitsuba_versions {
+
 namespace {
 
 Scene import_world(const std::string& world, const std::string& attributes) {
@@ -170,3 +172,5 @@ TEST_CASE("elements that use an undefined parameter without a default are left o
   CHECK(scene.cameras.at(0).width == 768);
   CHECK(scene.cameras.at(0).height == 100);
 }
+
+}  // namespace test_mitsuba_versions

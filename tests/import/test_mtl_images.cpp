@@ -11,6 +11,8 @@
 
 using namespace troffer;
 
+namespace test_mtl_images {
+
 namespace {
 
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n";
@@ -120,3 +122,5 @@ TEST_CASE("MTL: d 0 of most of a library, or with an image, is not invisible") {
   scene = import_material("Kd 1 1 1\nd 1\nTr 1");
   CHECK(only(scene).transmission.value == 0);
 }
+
+}  // namespace test_mtl_images

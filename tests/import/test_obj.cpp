@@ -17,6 +17,8 @@
 
 using namespace troffer;
 
+namespace test_obj {
+
 namespace {
 
 Scene import_text(const std::string& obj, const std::string& mtl = "") {
@@ -397,3 +399,5 @@ TEST_CASE("UTF-16 of both kinds, and Latin-1 in one file where the other has UTF
     CHECK(green(import_obj(folder.write("s.obj", wide))));
   }
 }
+
+}  // namespace test_obj

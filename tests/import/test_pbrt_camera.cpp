@@ -13,6 +13,8 @@
 
 using namespace troffer;
 
+namespace test_pbrt_camera {
+
 namespace {
 
 Scene import_options(const std::string& options, const std::string& world = "",
@@ -103,3 +105,5 @@ TEST_CASE("a light that is left out causes one warning, without its parameters")
   const Scene scene = import_options("", "LightSource \"point\" \"float nonsense\" 2");
   CHECK(has_warning(scene, "nonsense"));
 }
+
+}  // namespace test_pbrt_camera

@@ -14,6 +14,8 @@
 
 using namespace troffer;
 
+namespace test_pbrt_material {
+
 namespace {
 
 const std::string triangle = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]\n";
@@ -346,3 +348,5 @@ TEST_CASE("spectra in linear sRGB") {
   CHECK(value_at(ramp, 399) == 0);
   CHECK(value_at(ramp, 700) == doctest::Approx(3));
 }
+
+}  // namespace test_pbrt_material

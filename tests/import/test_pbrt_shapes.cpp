@@ -15,6 +15,8 @@
 
 using namespace troffer;
 
+namespace test_pbrt_shapes {
+
 namespace {
 
 Scene import_world(const std::string& world) {
@@ -194,3 +196,5 @@ TEST_CASE("alpha of a shape is the share of rays that hit it") {
   CHECK(m.is_alpha_blended);
   CHECK(coverage(scene.textures, m, Vec2{0, 0}) == 0.3f);
 }
+
+}  // namespace test_pbrt_shapes

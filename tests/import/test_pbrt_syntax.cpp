@@ -14,6 +14,8 @@
 
 using namespace troffer;
 
+namespace test_pbrt_syntax {
+
 namespace {
 
 Scene import_text(const std::string& text) {
@@ -269,3 +271,5 @@ TEST_CASE("damaged pbrt files load or fail cleanly") {
   CHECK(loads > 100);
   CHECK(errors > 100);
 }
+
+}  // namespace test_pbrt_syntax

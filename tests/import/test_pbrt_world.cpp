@@ -11,6 +11,8 @@
 
 using namespace troffer;
 
+namespace test_pbrt_world {
+
 namespace {
 
 Scene import_world(const std::string& world, const std::string& options = "") {
@@ -411,3 +413,5 @@ TEST_CASE("rgb in other colour spaces becomes linear sRGB by their primaries") {
   CHECK(near(by_attribute.materials.at(by_attribute.meshes.at(0).material).base_color.value,
              {0.3f, 0.5f, 0.2f}) == false);
 }
+
+}  // namespace test_pbrt_world

@@ -24,6 +24,8 @@
 
 using namespace troffer;
 
+namespace test_pieces {
+
 namespace {
 
 std::string bits_of(float x) {
@@ -306,3 +308,5 @@ TEST_CASE("welded corners are numbered in order of first appearance") {
   for (size_t i = 0; i < positions.size(); ++i)
     REQUIRE(bits_of(mesh.positions[i].y) == bits_of(positions[i].y));
 }
+
+}  // namespace test_pieces

@@ -13,6 +13,8 @@
 
 using namespace troffer;
 
+namespace test_pipes {
+
 TEST_CASE("a list is read from a pipe to its end, and not beyond a limit") {
   std::signal(SIGPIPE, SIG_IGN);  // the reader closes early
   const TempFolder folder;
@@ -30,3 +32,5 @@ TEST_CASE("a list is read from a pipe to its end, and not beyond a limit") {
   }
   CHECK_THROWS_AS(read_text_file(pipe), InputError);
 }
+
+}  // namespace test_pipes

@@ -12,6 +12,8 @@
 
 using namespace troffer;
 
+namespace test_ply {
+
 namespace {
 
 Mesh read_text(const std::string& text, WarningLog* log = nullptr) {
@@ -220,3 +222,5 @@ TEST_CASE("damaged PLY files load or fail cleanly") {
     }
   }
 }
+
+}  // namespace test_ply

@@ -16,6 +16,8 @@
 
 using namespace troffer;
 
+namespace test_radiance {
+
 namespace {
 
 Scene import_text(const std::string& text) {
@@ -245,3 +247,5 @@ TEST_CASE("mutated Radiance files load or are refused") {
       "sg source sky 0 0 4 0 0 1 180\n";
   test::check_mutations(sky, 40, import);
 }
+
+}  // namespace test_radiance

@@ -14,6 +14,8 @@
 
 using namespace troffer;
 
+namespace test_radiance_materials {
+
 namespace {
 
 Scene import_text(const std::string& text) {
@@ -55,12 +57,43 @@ TEST_CASE("mixfunc blends by its function") {
   CHECK_THROWS_AS(import_text("void mixfunc m 4 m m .5 . 0 0\nm" + square), InputError);
 }
 
-TEST_CASE("a mirror is seen as its alternate material") {
-  CHECK(import_text("void mirror m 1 void 0 3 .1 .1 .1\nm" + square).meshes.empty());
+TEST_CASE("a mirror is seen as its alternate material and relays light from sources") {
+  const Scene unseen = import_text("void mirror m 1 void 0 3 .1 .2 .3\nm" + square);
+  CHECK(unseen.meshes.empty());
+  REQUIRE(unseen.relays.size() == 1);
+  CHECK(unseen.relays[0].reflectance.b == 0.3f);
+  CHECK(unseen.relays[0].outline.size() == 4);
+  CHECK(unseen.relays[0].normal.z == doctest::Approx(1));
   const Scene other = import_text(a_and_b + "void mirror m 1 b 0 3 .1 .1 .1\nm" + square);
   CHECK(worn(other).base_color.value.r == 0.6f);
-  CHECK(has_warning(other, "alternate material"));
-  CHECK(worn(import_text("void mirror m 0 0 3 .1 .1 .1\nm" + square)).is_reflectance);
+  CHECK(other.relays.size() == 1);
+  CHECK(other.warnings.entries().empty());
+  const Scene plain = import_text("void mirror m 0 0 3 .1 .1 .1\nm" + square);
+  CHECK(worn(plain).is_reflectance);
+  CHECK(plain.relays.empty());
+}
+
+TEST_CASE("shapes of mirrors with an alternate material") {
+  const std::string mirror = "void mirror m 1 void 0 3 .1 .1 .1\n";
+  // An L of three squares: its relays together have its area.
+  const Scene concave =
+      import_text(mirror + "m polygon p 0 0 18  0 0 1  2 0 1  2 1 1  1 1 1  1 2 1  0 2 1\n");
+  double area = 0;
+  for (const LightRelay& r : concave.relays) {
+    CHECK(r.normal.z == doctest::Approx(1));
+    Vec3 twice;
+    for (size_t i = 2; i < r.outline.size(); ++i)
+      twice = twice + cross(r.outline[i - 1] - r.outline[0], r.outline[i] - r.outline[0]);
+    area += double(twice.z) / 2;
+  }
+  CHECK(area == doctest::Approx(3));
+  const Scene ring = import_text(mirror + "m ring r 0 0 8  1 2 3  0 0 -1  0 2\n");
+  REQUIRE(ring.relays.size() == 1);
+  CHECK(ring.relays[0].normal.z == doctest::Approx(-1));
+  CHECK(length(Vec3d(ring.relays[0].outline[5]) + ring.origin - Vec3d{1, 2, 3}) ==
+        doctest::Approx(2));
+  CHECK(has_warning(import_text(mirror + "m ring r 0 0 8  0 0 0  0 0 1  1 2\n"), "hole"));
+  CHECK(import_text(mirror + "m sphere s 0 0 4  0 0 0  1\n").relays.empty());
 }
 
 TEST_CASE("a glow with a negative radius gives no light") {
@@ -150,3 +183,5 @@ TEST_CASE("files and fronts: cat and xform of several, quotes, -I") {
       CHECK((area_vector(mesh, mesh.triangles.at(0)).z > 0) == (is_inverted == is_mirrored));
     }
 }
+
+}  // namespace test_radiance_materials

@@ -15,6 +15,8 @@
 
 using namespace troffer;
 
+namespace test_radiance_sky {
+
 namespace {
 
 Scene import_text(const std::string& text) {
@@ -235,3 +237,5 @@ TEST_CASE("the language of function files is evaluated correctly") {
     CHECK_THROWS_AS(p.expression(bad, {}), InputError);
   }
 }
+
+}  // namespace test_radiance_sky

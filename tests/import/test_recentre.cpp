@@ -13,6 +13,8 @@
 
 using namespace troffer;
 
+namespace test_recentre {
+
 namespace {
 
 Boxd box_around(const Vec3d& middle, double side) {
@@ -149,3 +151,5 @@ TEST_CASE("a scene too large for floats causes a warning with the rounding step"
   CHECK_FALSE(has_warning(triangle(1000, 0), "across"));
   CHECK_FALSE(has_warning(triangle(1000, 1e6), "across"));
 }
+
+}  // namespace test_recentre

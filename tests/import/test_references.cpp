@@ -14,6 +14,8 @@
 
 using namespace troffer;
 
+namespace test_references {
+
 namespace {
 
 // Returns a red texel.
@@ -127,3 +129,5 @@ TEST_CASE("other spellings never lead out of the folder, and an exact match has 
   CHECK(confined_path(inner, "A.TXT").path == inner + "/a.txt");
   CHECK(notes.notes().size() == 1);
 }
+
+}  // namespace test_references

@@ -15,6 +15,8 @@
 
 using namespace troffer;
 
+namespace test_stl_gzip {
+
 namespace {
 
 std::string gzipped(const std::string& text) {
@@ -132,3 +134,5 @@ TEST_CASE("a PLY file is a scene of one grey mesh") {
   CHECK(far.origin.x != 0);
   CHECK(reason_of(folder.write("c.ply", "plywood")) != "");
 }
+
+}  // namespace test_stl_gzip

@@ -5,6 +5,8 @@
 
 using namespace troffer;
 
+namespace test_uv_sets {
+
 namespace {
 
 // Returns the unit square with two sets of coordinates: TEXCOORD_`a` as in square_bytes(), (x, 1 -
@@ -104,3 +106,5 @@ TEST_CASE("a third set and missing sets cause warnings") {
   CHECK(scene.meshes[0].uvs.size() == 4);
   CHECK(scene.meshes[0].uvs_2.empty());
 }
+
+}  // namespace test_uv_sets

@@ -8,6 +8,8 @@
 
 using namespace troffer;
 
+namespace test_vertex_alpha {
+
 namespace {
 
 // Returns a sheet of four vertices with these alphas; the material's own alpha is `factor`.
@@ -61,3 +63,5 @@ TEST_CASE("vertex alpha is ignored by opaque materials and cuts holes in masked 
   CHECK(coverage_at_corner(sheet({.75f, .75f, .75f, .75f}, "MASK", 1), 0) == 1);
   CHECK_FALSE(sheet({1, 1, 1, 1}, "BLEND", 1).materials[0].is_alpha_masked);
 }
+
+}  // namespace test_vertex_alpha

@@ -16,6 +16,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_window_xml {
+
 namespace {
 
 AngularBsdf read(const std::string& text, WarningLog* log = nullptr) {
@@ -217,3 +219,5 @@ TEST_CASE("Radiance's BSDF and aBSDF materials read a file beside the scene") {
   CHECK_THROWS_AS(import_scene(folder.write("d.rad", "void aBSDF b 1 w.xml 0 0\nb" + square)),
                   InputError);
 }
+
+}  // namespace test_window_xml

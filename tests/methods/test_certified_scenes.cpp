@@ -13,6 +13,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_certified_scenes {
+
 namespace {
 
 constexpr float half_pi_f = 1.57079633f;
@@ -301,3 +303,5 @@ TEST_CASE(
     CHECK((b > 0) == (radiance > 0));
   }
 }
+
+}  // namespace test_certified_scenes

@@ -15,6 +15,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_direct {
+
 namespace {
 
 struct NamedSource {
@@ -302,3 +304,5 @@ TEST_CASE("fixed sends the requested number of shadow rays") {
   CHECK(counters.shadow_rays == 10 * 2 * 7);
   for (const uint32_t n : out.shadow_rays) CHECK(n == 14);
 }
+
+}  // namespace test_direct

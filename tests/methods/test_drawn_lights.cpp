@@ -10,6 +10,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_drawn_lights {
+
 namespace {
 
 // A room with n × n lights of about 3 cm under a ceiling of 6 × 6 m, over a matte floor. In
@@ -410,3 +412,5 @@ TEST_CASE(
   const double deviation = std::sqrt(got.direct.variance_of_mean() * 2000) / got.direct.mean();
   CHECK(deviation < 0.02);
 }
+
+}  // namespace test_drawn_lights

@@ -10,6 +10,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_gloss {
+
 namespace {
 
 // A rough floor under a panel. has_leaf: a leaf between the two makes lists incomplete.
@@ -122,3 +124,5 @@ TEST_CASE("gloss: where rays decide visibility, they are unbiased") {
       if (point.y < 0) CHECK(deviation(got.direct, 600) < 0.003 * got.direct.mean());  // open
     }
 }
+
+}  // namespace test_gloss

@@ -18,6 +18,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_kj92 {
+
 namespace {
 
 struct Kj92Options {
@@ -615,3 +617,5 @@ TEST_CASE("the result of a batch does not depend on earlier use of its scratch")
   const std::vector<Rgb> again = run(*used);
   for (size_t i = 0; i < first.size(); ++i) CHECK(first[i] == again[i]);
 }
+
+}  // namespace test_kj92

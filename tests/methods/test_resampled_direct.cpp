@@ -11,6 +11,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_resampled_direct {
+
 namespace {
 
 const Vec3 eye{0.3f, 1, 1.2f};
@@ -101,3 +103,5 @@ TEST_CASE("a ray to one of several lights estimates the light of all") {
   // Spread of single values, from the error of the mean of 4000.
   CHECK(one.standard_error() * std::sqrt(4000.0) < 0.2 * one.mean());
 }
+
+}  // namespace test_resampled_direct

@@ -15,6 +15,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_audit {
+
 namespace {
 
 double normal(Random& random) {
@@ -189,3 +191,5 @@ TEST_CASE("audit: the same for any number of threads, and a stop during it is re
   const auto stop_at_last = [&](double f) { stop = f >= 1; };
   CHECK_FALSE(measure(scene, points, o, stop_at_last, stop).is_complete);
 }
+
+}  // namespace test_audit

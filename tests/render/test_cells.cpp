@@ -12,6 +12,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_cells {
+
 namespace {
 
 MeasureOptions by_cells(int spp) {
@@ -341,3 +343,5 @@ TEST_CASE("cells: cells that few rays share send few rays") {
               render_now(scene, look_at({0, -9, 2}, {0, 0, 2}, {0, 0, 1}, 35), o).layers[0].image))
           .epsilon(0.005));
 }
+
+}  // namespace test_cells

@@ -11,6 +11,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_certified {
+
 namespace {
 
 RenderOptions certified_options() {
@@ -308,3 +310,5 @@ TEST_CASE("certified: the estimated error is between the actual error and twice 
     }
   }
 }
+
+}  // namespace test_certified

@@ -17,6 +17,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_checkpoint {
+
 namespace {
 
 struct File {
@@ -285,3 +287,5 @@ TEST_CASE("a checkpoint that cannot be written causes one warning, and rendering
   o.checkpoint = nullptr;
   CHECK(is_identical(r.layers, render_now(room.scene, room.camera, o).layers));
 }
+
+}  // namespace test_checkpoint

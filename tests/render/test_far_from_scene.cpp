@@ -11,6 +11,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_far_from_scene {
+
 namespace {
 
 const StopFlag never_stopped = false;
@@ -89,3 +91,5 @@ TEST_CASE("uniform surroundings are equally bright near the scene and far away")
   // The plate hides less than the allowed error at .2 m.
   check_everywhere(plate_in_surroundings(), 2 * pi);
 }
+
+}  // namespace test_far_from_scene

@@ -214,3 +214,63 @@ TEST_CASE(
   with_sphere.spheres.push_back({{5, 5, 0.2f}, 0.5f, false, grey, no_light});
   CHECK(!mirror_image_of(with_sphere, m).has_value());
 }
+
+namespace {
+
+// Adds a relay in the plane z = 0 that faces up.
+void add_relay(Scene& s, Rgb reflectance, float half) {
+  s.relays.push_back({{{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}},
+                      {0, 0, 1},
+                      reflectance});
+}
+
+}  // namespace
+
+// Radiance's definition: a virtual source behind the mirror, its reflectance at every angle.
+TEST_CASE("a relay sends the light of a point's mirror image, at a grazing angle as well") {
+  Scene s;
+  add_diffuse(s, Rgb{0});
+  add_relay(s, {0.3f, 0.2f, 0.1f}, 5);
+  add_point(s, {0, 0, 1}, Rgb{5});
+  const PreparedScene scene(std::move(s));
+  // From (7,0,1), facing down: the light itself lies in the sensor's horizon, its image 2 m below.
+  const double cosine = 2 / std::sqrt(53.0);
+  for (const Method method : {Method::certified, Method::path})
+    for (const Indirect indirect : {Indirect::automatic, Indirect::cells}) {
+      if (method == Method::path && indirect == Indirect::cells) continue;
+      const Measurement m = at(scene, {7, 0, 1}, {0, 0, -1}, method, 0, indirect);
+      CHECK(double(m.irradiance.r) == doctest::Approx(0.3 * 5 * cosine / 53).epsilon(1e-3));
+      CHECK(double(m.irradiance.b) == doctest::Approx(0.1 * 5 * cosine / 53).epsilon(1e-3));
+      // Behind the relay nothing is reflected and nothing is hidden.
+      const Measurement behind = at(scene, {0, 0, -1}, {0, 0, 1}, method, 0, indirect);
+      CHECK(double(behind.irradiance.g) == doctest::Approx(5.0 / 4).epsilon(1e-3));
+    }
+  CHECK(at(scene, {7, 0, 1}, {0, 0, -1}, Method::certified, 0, Indirect::none).irradiance.g < 1e-6);
+}
+
+TEST_CASE("a relay's light is reflected by matte and coated surfaces alike") {
+  for (const bool is_coated : {false, true}) {
+    Scene s;
+    Material m;
+    m.base_color = {Rgb{0.5f}, no_texture};
+    if (is_coated) m.kind = MaterialKind::coated_diffuse;
+    s.materials.push_back(m);
+    // A ceiling at 2 m, lit from below by the image of a lamp that shines down only.
+    add_quad(s, 0, {Vec3{-4, -4, 2}, {-4, 4, 2}, {4, 4, 2}, {4, -4, 2}});
+    add_relay(s, Rgb{0.5f}, 3);
+    add_lamp(s, add_diffuse(s, Rgb{0}), {0.3f, -0.2f, 1.5f}, 0.1f, Rgb{50});
+    const PreparedScene scene(std::move(s));
+    const Vec3d point{0, 0, 0.5};
+    const Measurement paths = at(scene, point, {0, 0, 1}, Method::path, 1 << 15);
+    CHECK(paths.irradiance.g > 0.01f);
+    for (const Indirect indirect : {Indirect::automatic, Indirect::cells}) {
+      const Measurement found = at(scene, point, {0, 0, 1}, Method::certified, 0, indirect);
+      const double spread = std::hypot(found.standard_error, paths.standard_error);
+      CAPTURE(is_coated);
+      CAPTURE(found.illuminance_lx);
+      CAPTURE(paths.illuminance_lx);
+      CHECK(std::abs(found.illuminance_lx - paths.illuminance_lx) < 4 * spread);
+      CHECK(spread < 0.02 * paths.illuminance_lx);
+    }
+  }
+}

@@ -11,6 +11,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_pinhole {
+
 namespace {
 
 // A lamp of 80 cm at 2.6 m, an opaque plate with a hole at 1.2 m, and a floor.
@@ -66,3 +68,5 @@ TEST_CASE("light through a small hole: less asked error never gives much more") 
     CHECK(r.statistics.estimated_error < 2 * error);
   }
 }
+
+}  // namespace test_pinhole

@@ -12,6 +12,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_points_by_cells {
+
 namespace {
 
 const StopFlag runs_on = false;
@@ -280,3 +282,5 @@ TEST_CASE("rays of cells among translucent leaves do not branch at every leaf") 
   // At most the two sides of the leaf at which a ray ends.
   CHECK(double(cells.statistics.entries) < 2 * double(cells.statistics.rays));
 }
+
+}  // namespace test_points_by_cells

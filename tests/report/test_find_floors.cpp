@@ -11,6 +11,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_find_floors {
+
 namespace {
 
 constexpr Vec3d up{0, 0, 1};
@@ -219,3 +221,5 @@ TEST_CASE("names are in natural order, and numbers go row by row on the plan") {
   CHECK(found.surfaces[2].corner.x == doctest::Approx(4));
   CHECK(found.surfaces[11].corner.y == doctest::Approx(1));
 }
+
+}  // namespace test_find_floors

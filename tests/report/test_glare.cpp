@@ -12,6 +12,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_glare {
+
 namespace {
 
 constexpr Vec3d up{0, 0, 1};
@@ -167,3 +169,5 @@ TEST_CASE("a luminaire of two faces counts by its mean luminance") {
         doctest::Approx(25e6 * seen[0].solid_angle / std::pow(seen[0].position_index, 2))
             .epsilon(0.01));
 }
+
+}  // namespace test_glare

@@ -8,6 +8,8 @@
 
 using namespace troffer;
 
+namespace test_orientation {
+
 namespace {
 
 // Builds scenes with y up; z_up() turns them.
@@ -240,3 +242,5 @@ TEST_CASE("directions have names") {
   CHECK(name_of_up({0, 0, -2}) == "-z");
   CHECK(name_of_up({0.6f, 0, 0.8f}) == "0.6,0,0.8");
 }
+
+}  // namespace test_orientation

@@ -9,6 +9,8 @@
 
 using namespace troffer;
 
+namespace test_texture {
+
 namespace {
 
 // 3 × 2 linear grey texels: 1 2 3 / 4 5 6.
@@ -167,3 +169,5 @@ TEST_CASE("material inputs multiply value and texture channel") {
   CHECK(evaluate(textures, FloatInput{3, 0, 1}, Vec2{0, 0}) == doctest::Approx(0.6));
   CHECK(evaluate(textures, FloatInput{3, 0, 3}, Vec2{0, 0}) == 3);
 }
+
+}  // namespace test_texture

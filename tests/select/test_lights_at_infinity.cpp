@@ -12,6 +12,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_lights_at_infinity {
+
 namespace {
 
 // Distant lights from above and from below, an environment light, and lights with a place.
@@ -133,3 +135,5 @@ TEST_CASE("the tree never leaves out a point, spot or distant light that shines 
     }
   }
 }
+
+}  // namespace test_lights_at_infinity

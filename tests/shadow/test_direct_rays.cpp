@@ -10,6 +10,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_direct_rays {
+
 namespace {
 
 // Returns side × side level plates at height z, which cover `part` of [-size, size]² around
@@ -251,3 +253,5 @@ TEST_CASE("direct rays: where clutter leaves much open, nothing else is tried") 
   closed.push_back(parallelogram_facet({-2, -2, 1.1f}, {4, 0, 0}, {0, 4, 0}));
   CHECK(gathers_behind(closed).first > 1);
 }
+
+}  // namespace test_direct_rays

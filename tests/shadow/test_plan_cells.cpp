@@ -12,6 +12,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_plan_cells {
+
 namespace {
 
 // Returns a level plane at height z with a square hole around (x, y).
@@ -161,3 +163,5 @@ TEST_CASE("masks: facets that a source cell's list leaves out do not hide the ce
   CHECK(segments > 100000);
   CHECK(kept < 0.8 * double(all));
 }
+
+}  // namespace test_plan_cells

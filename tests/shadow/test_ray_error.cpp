@@ -11,6 +11,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_ray_error {
+
 namespace {
 
 struct Errors {
@@ -92,3 +94,5 @@ TEST_CASE("direct rays: the estimated error is the actual error, behind random o
     is_told("100 leaves", [](Random& r) { return leaves(r, 100, 0.08f); });
   }
 }
+
+}  // namespace test_ray_error

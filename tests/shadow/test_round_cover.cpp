@@ -11,6 +11,8 @@
 
 using namespace troffer;
 
+namespace test_round_cover {
+
 namespace {
 
 Vec3d in_cube(Random& r) {
@@ -210,3 +212,5 @@ TEST_CASE("certificates of spheres and disks are not contradicted by any segment
   CHECK(all > 800);
   CHECK(wrong == 0);
 }
+
+}  // namespace test_round_cover

@@ -16,6 +16,8 @@
 using namespace troffer;
 using namespace troffer::test;
 
+namespace test_instances {
+
 namespace {
 
 std::vector<Ray> rays_in_room(size_t n) {
@@ -265,3 +267,38 @@ TEST_CASE("instances with holes are distinguished, as copies are") {
   }
   CHECK(most > 50);
 }
+
+TEST_CASE("two instances of a sheet that a ray meets alike draw their coverage independently") {
+  // The second instance is turned half about the rays' axis, so all rays are the same in both.
+  Scene s;
+  Material m;
+  m.is_alpha_masked = m.is_alpha_blended = true;
+  m.alpha.value = 0.3f;
+  s.materials.push_back(m);
+  Mesh sheet;
+  sheet.positions = {{-1, -2, 0}, {3, -2, 0}, {3, 1, 0}, {-1, 1, 0}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  s.instanced_meshes.push_back(sheet);
+  Affine turned;
+  turned.columns[0] = {-1, 0, 0};
+  turned.columns[1] = {0, -1, 0};
+  for (const Affine& t : {Affine(), turned})
+    s.instances.push_back(
+        make_instance(0, t, "", reach_of(sheet), bounds_in_world(s.instanced_meshes[0], t)));
+  const Tracer tracer(s, nullptr);
+  constexpr size_t n = 10'000;
+  std::vector<Ray> rays(n);
+  for (size_t i = 0; i < n; ++i) {
+    rays[i].origin = {0, 0, 1 + 1e-4f * float(i)};
+    rays[i].direction = {0, 0, -1};
+  }
+  std::vector<Hit> hits(n);
+  tracer.closest(rays, hits, Coherence::none, Meeting::all);
+  const auto passed =
+      double(std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return !h.is_valid(); }));
+  // One number for both would let .7 pass.
+  const double expected = 0.7 * 0.7, sigma = std::sqrt(expected * (1 - expected) / n);
+  CHECK(std::abs(passed / n - expected) < 4 * sigma);
+}
+
+}  // namespace test_instances

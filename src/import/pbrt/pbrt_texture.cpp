@@ -205,15 +205,12 @@ void PbrtTextures::make_image(Named& texture, const std::string& name) {
     index = int32_t(scene_.textures.size());
     scene_.textures.push_back(std::move(changed));
   };
-  const auto is_mirror_pane = [&] {
-    return scene_.textures[size_t(index)].kind == TextureKind::image;
-  };
-  if (is_mirror_pane() && gamma != 1 && gamma > 0 &&
-      !scene_.textures[size_t(index)].texels8.empty())
+  const auto is_image = [&] { return scene_.textures[size_t(index)].kind == TextureKind::image; };
+  if (is_image() && gamma != 1 && gamma > 0 && !scene_.textures[size_t(index)].texels8.empty())
     append(gamma_copy(scene_.textures[size_t(index)], float(gamma)));
-  if (is_mirror_pane() && texture.is_float && scene_.textures[size_t(index)].channels > 1)
+  if (is_image() && texture.is_float && scene_.textures[size_t(index)].channels > 1)
     append(grey_copy(scene_.textures[size_t(index)]));
-  if (is_mirror_pane() && is_mapped) {  // maps a position in space instead of (u,v)
+  if (is_image() && is_mapped) {  // maps a position in space instead of (u,v)
     append(scene_.textures[size_t(index)]);
     Texture& mapped = scene_.textures.back();
     turn_upside_down(mapped, {1, 1}, {0, 0});

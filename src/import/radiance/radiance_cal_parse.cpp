@@ -8,16 +8,16 @@ namespace troffer {
 namespace {
 
 constexpr int max_nesting = 200;
-constexpr size_t max_nodes = 2'000'000;
+constexpr size_t most_program_nodes = 2'000'000;
 
-bool is_letter(char c) {
+bool is_name_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '`';
 }
-bool is_digit(char c) {
+bool is_name_digit(char c) {
   return c >= '0' && c <= '9';
 }
 bool is_of_name(char c) {
-  return is_letter(c) || is_digit(c) || c == '_' || c == '.';
+  return is_name_letter(c) || is_name_digit(c) || c == '_' || c == '.';
 }
 
 }  // namespace
@@ -97,14 +97,14 @@ void CalParser::expect(char c) {
 }
 
 std::string CalParser::name() {
-  if (!is_letter(peek())) fail("a name expected");
+  if (!is_name_letter(peek())) fail("a name expected");
   const size_t begin = at_;
   while (at_ < text_.size() && is_of_name(text_[at_])) ++at_;
   return std::string(text_.substr(begin, at_ - begin));
 }
 
 int32_t CalParser::add(CalNode node) {
-  if (program_.nodes_.size() >= max_nodes) fail("the function files are too large");
+  if (program_.nodes_.size() >= most_program_nodes) fail("the function files are too large");
   program_.nodes_.push_back(std::move(node));
   return int32_t(program_.nodes_.size()) - 1;
 }
@@ -151,8 +151,8 @@ int32_t CalParser::single() {
     expect(')');
     return inside;
   }
-  if (is_digit(c) || c == '.') return number();
-  if (is_letter(c)) return named();
+  if (is_name_digit(c) || c == '.') return number();
+  if (is_name_letter(c)) return named();
   fail(c == '\0' ? "an expression ends early" : "a number, a name or '(' expected");
 }
 
@@ -186,7 +186,7 @@ void CalParser::definition() {
   parameters_.clear();
   const bool is_output = take('$');
   if (is_output) {
-    while (at_ < text_.size() && is_digit(text_[at_])) ++at_;
+    while (at_ < text_.size() && is_name_digit(text_[at_])) ++at_;
     expect('=');
     sum();
     return;

@@ -196,13 +196,11 @@ RadianceLook RadianceMaterials::convert(const std::string& name, const RadianceM
     look.is_there = false;
     return look;
   }
-  // A mirror with an alternate material reflects light from sources only; viewers see the
-  // alternate.
   if (m.type == "mirror" && !m.arguments.strings.empty()) {
-    scene_.warnings.add(
-        "\"mirror\" with an alternate material is shown as that material: sunlight and lamplight "
-        "that it would reflect onto other surfaces are left out");
-    return look_of(m.arguments.strings[0], m.place);
+    look = look_of(m.arguments.strings[0], m.place);
+    look.relayed = clamp01(radiance_material(m, scene_.warnings).base_color.value *
+                           constant_part(patterns_of(m), false));
+    return look;
   }
   Material material;
   if (convert_emission(m, look)) {

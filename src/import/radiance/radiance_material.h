@@ -20,6 +20,9 @@ struct RadianceLook {
   bool is_there = true;  // false for void: light passes unchanged
   uint32_t material = 0;
   Rgb emission;
+  // `mirror` with an alternate material: reflectance for light from sources. The rest is the
+  // alternate's look.
+  Rgb relayed;
   // The next three belong to spotlight, which emits only within an angle about an axis.
   bool is_spot = false;
   double spot_angle_deg = 0;

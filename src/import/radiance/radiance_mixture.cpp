@@ -58,6 +58,7 @@ RadianceLook RadianceMaterials::mix(const std::string& name, const RadianceModif
   if (!front.is_there && !back.is_there) return front;
   const bool is_front = front.is_there && (share >= 0.5 || !back.is_there);
   RadianceLook look = is_front ? front : back;
+  look.relayed = Rgb{0};
   Material material = scene_.materials[look.material];
   material.name = name;
   if (front.is_there && back.is_there) {

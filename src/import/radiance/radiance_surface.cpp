@@ -7,6 +7,7 @@
 #include "import/limits.h"
 #include "import/mesh_clean.h"
 #include "import/polygon.h"
+#include "import/radiance/radiance_relay.h"
 #include "import/radiance/radiance_sky.h"
 #include "import/radiance/radiance_spot.h"
 #include "import/tessellate.h"
@@ -79,7 +80,7 @@ ShapeAttributes RadianceSurfaces::placed_look(const RadianceLook& look, const st
 void RadianceSurfaces::add_polygon(const RadianceModifier& p, const std::string& name,
                                    std::vector<Vec3d> corners, bool is_inverted) {
   const RadianceLook look = materials_.look_without_patterns(p.modifier, p.place);
-  if (!look.is_there) return;
+  if (!look.is_there && look.relayed.is_black()) return;
   if (look.is_spot) {
     add_radiance_spot(look, name, extent_of_polygon(corners, p.world, is_inverted), scene_);
     return;
@@ -89,6 +90,8 @@ void RadianceSurfaces::add_polygon(const RadianceModifier& p, const std::string&
     p.place.fail("the scene has more than 60 million triangles");
   if (p.world.swaps_handedness() != is_inverted) std::reverse(corners.begin(), corners.end());
   for (Vec3d& c : corners) c = p.world.point(c);
+  if (!look.relayed.is_black()) add_radiance_relays(corners, look.relayed, scene_, bounds_);
+  if (!look.is_there) return;
   std::vector<Vec3> points;
   for (const Vec3d& c : corners) points.emplace_back(c - corners[0]);
   std::vector<Triangle> triangles;
@@ -157,6 +160,29 @@ void RadianceSurfaces::add_ring(const RadianceModifier& p, const ShapeAttributes
   placer_.add_mesh({std::move(mesh), {}}, t, t.swaps_handedness() != is_inverted, look);
 }
 
+// Adds the relay of a ring without a hole. Others and curved surfaces have none; in Radiance curved
+// surfaces have none either.
+void RadianceSurfaces::add_round_relay(const RadianceModifier& p, const Rgb& reflectance,
+                                       bool is_inverted) {
+  if (p.type != "ring") return;
+  need(p, 8);
+  const double a = p.arguments.reals[6], b = p.arguments.reals[7], radius = std::max(a, b);
+  if (std::min(a, b) > 0) {
+    scene_.warnings.add(
+        "\"mirror\" with an alternate material on a ring with a hole: the light that it would "
+        "reflect is left out");
+    return;
+  }
+  const Affine t = p.world * frame(vector_at(p, 0), vector_at(p, 3));
+  std::vector<Vec3d> corners;
+  for (int i = 0; i < round_steps; ++i) {
+    const double phi = 2 * pi * i / round_steps;
+    corners.push_back(t.point({radius * std::cos(phi), radius * std::sin(phi), 0}));
+  }
+  if (t.swaps_handedness() != is_inverted) std::reverse(corners.begin(), corners.end());
+  add_radiance_relays(corners, reflectance, scene_, bounds_);
+}
+
 void RadianceSurfaces::add_source(const RadianceModifier& p, const std::string& name) {
   need(p, 4);
   const RadianceLook look = materials_.look_of(p.modifier, p.place);
@@ -193,6 +219,7 @@ void RadianceSurfaces::add(const RadianceModifier& p, const std::string& name, b
     return;
   }
   const RadianceLook look = materials_.look_without_patterns(p.modifier, p.place);
+  if (!look.relayed.is_black()) add_round_relay(p, look.relayed, is_inverted);
   if (!look.is_there) return;
   if (look.is_spot) {
     add_radiance_spot(look, name, extent_of_round(p, is_inverted), scene_);

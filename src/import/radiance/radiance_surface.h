@@ -15,7 +15,7 @@ class RadianceSurfaces {
  public:
   // All arguments must outlive this object.
   RadianceSurfaces(Scene& scene, PlacedBounds& bounds, RadianceMaterials& materials)
-      : scene_(scene), materials_(materials), placer_(scene, bounds) {}
+      : scene_(scene), bounds_(bounds), materials_(materials), placer_(scene, bounds) {}
 
   static bool is_surface(const std::string& type);
 
@@ -36,6 +36,7 @@ class RadianceSurfaces {
   };
 
   Scene& scene_;
+  PlacedBounds& bounds_;
   RadianceMaterials& materials_;
   GeometryPlacer placer_;
   std::map<uint32_t, Collected> collected_;
@@ -45,6 +46,7 @@ class RadianceSurfaces {
                               const SourcePlace& place) const;
   void add_cone(const RadianceModifier& p, const ShapeAttributes& look, bool is_inverted);
   void add_ring(const RadianceModifier& p, const ShapeAttributes& look, bool is_inverted);
+  void add_round_relay(const RadianceModifier& p, const Rgb& reflectance, bool is_inverted);
   void add_source(const RadianceModifier& p, const std::string& name);
 };
 
