@@ -29,15 +29,9 @@ constexpr uint32_t test_rays_of_pixel = 8;
 
 struct FurtherChoice {
   FurtherWay way;
-<<<<<<< HEAD
   double rays = 0;   // further rays of a pixel of the tile
   double times = 1;  // the same over the number that was planned for the test pixels
   double cost = 0;   // of the further rays of a pixel (costs.h)
-=======
-  bool is_tested = false;
-  double rays = 0;   // if tested: further rays of a pixel of the tile
-  double times = 1;  // if tested: `rays` over the number that was planned
->>>>>>> b644ad7e72c842958fed6c1edc56e736efe2bb28
 };
 
 // Luminances of the test rays of one way, for each test pixel, and the cost of a ray (costs.h).
@@ -55,22 +49,12 @@ struct TestPixel {
   double rays = 4;       // first rays
 };
 
-<<<<<<< HEAD
 // Returns the way of least cost for a given error. Rays like the first ones take `cost_of_first`
 // each and vary as planned; no other way is taken to vary less. Ways whose test rays bring less
 // than half the light that the first rays have seen are out: the rest may come in rays so rare and
 // bright that no test shows their variance, such as samples of a lamp behind a pinhole. most_even:
 // as in samples_for() (sample_spread.h).
 FurtherChoice choose_further_way(std::span<const TestPixel> pixels, double cost_of_first,
-=======
-// Returns the way of least cost for a given error. The first of `tested` is like the first rays of
-// a pixel; its variance is the mean of what the plan and the test say. Another way is rejected if
-// its test rays find less than half the light that the first rays found: the missing light may come
-// in rays so rare and bright that no test meets one, such as samples of a lamp behind a pinhole. No
-// other way is assumed to have less variance than the first. most_even: as in samples_for()
-// (sample_spread.h).
-FurtherChoice choose_further_way(std::span<const TestPixel> pixels,
->>>>>>> b644ad7e72c842958fed6c1edc56e736efe2bb28
                                  std::span<const TestedWay> tested, double most_even);
 
 }  // namespace troffer
