@@ -15,7 +15,7 @@ using namespace troffer::test;
 
 namespace {
 
-RadiosityOptions quick() {
+RadiosityOptions few_elements() {
   RadiosityOptions o;
   o.meshing = sizes(0.6f, 1.8f);
   o.unshot_fraction = 0.1f;
@@ -41,8 +41,8 @@ std::string refusal(const Ready& r, const std::vector<uint8_t>& bytes, const Rad
 
 TEST_CASE("a saved solution comes back the same") {
   const Ready ready(lit_room(0.5f));
-  const RadiositySolution s = ready.solve(quick());
-  const RadiositySolution t = load(ready, save_solution(ready.scene, s), quick());
+  const RadiositySolution s = ready.solve(few_elements());
+  const RadiositySolution t = load(ready, save_solution(ready.scene, s), few_elements());
   REQUIRE(t.general.size() == s.general.size());
   CHECK(std::memcmp(t.general.data(), s.general.data(), s.general.size() * sizeof(Rgb)) == 0);
   REQUIRE(t.stored.size() == s.stored.size());
@@ -65,26 +65,26 @@ TEST_CASE("a saved solution comes back the same") {
 
 TEST_CASE("another scene or other settings are refused") {
   const Ready ready(lit_room(0.5f));
-  const std::vector<uint8_t> bytes = save_solution(ready.scene, ready.solve(quick()));
+  const std::vector<uint8_t> bytes = save_solution(ready.scene, ready.solve(few_elements()));
   const char* what = "another scene";
   const char* settings = "other settings";
-  CHECK(refusal(Ready(lit_room(0.51f)), bytes, quick()).find(what) != std::string::npos);
-  CHECK(refusal(Ready(lit_room(0.5f, 4.1f)), bytes, quick()).find(what) != std::string::npos);
-  RadiosityOptions o = quick();
+  CHECK(refusal(Ready(lit_room(0.51f)), bytes, few_elements()).find(what) != std::string::npos);
+  CHECK(refusal(Ready(lit_room(0.5f, 4.1f)), bytes, few_elements()).find(what) != std::string::npos);
+  RadiosityOptions o = few_elements();
   o.tolerance *= 2;
   CHECK(refusal(ready, bytes, o).find(settings) != std::string::npos);
-  o = quick();
+  o = few_elements();
   o.light_rays /= 2;
   CHECK(refusal(ready, bytes, o).find(settings) != std::string::npos);
-  o = quick();
+  o = few_elements();
   o.meshing.element_size = 0.7f;
   CHECK(refusal(ready, bytes, o).find("its element size is 0.6, not 0.7") != std::string::npos);
-  CHECK(refusal(ready, bytes, quick()).empty());
+  CHECK(refusal(ready, bytes, few_elements()).empty());
 }
 
 TEST_CASE("a solution reports its settings") {
   const Ready ready(lit_room(0.5f));
-  RadiosityOptions o = quick();
+  RadiosityOptions o = few_elements();
   o.seed = 0x123456789abcull;
   o.meshing.max_elements = 5000;
   const RadiositySolution s =
@@ -98,28 +98,28 @@ TEST_CASE("a solution reports its settings") {
 
 TEST_CASE("damaged files are refused") {
   const Ready ready(lit_room(0.5f));
-  const std::vector<uint8_t> bytes = save_solution(ready.scene, ready.solve(quick()));
+  const std::vector<uint8_t> bytes = save_solution(ready.scene, ready.solve(few_elements()));
   for (size_t n : {size_t(0), size_t(5), size_t(8), size_t(60), size_t(199), size_t(200),
                    bytes.size() / 2, bytes.size() - 1}) {
     const std::vector<uint8_t> part(bytes.begin(), bytes.begin() + std::ptrdiff_t(n));
-    CHECK_FALSE(refusal(ready, part, quick()).empty());
+    CHECK_FALSE(refusal(ready, part, few_elements()).empty());
   }
   std::vector<uint8_t> longer = bytes;
   longer.push_back(0);
-  CHECK_FALSE(refusal(ready, longer, quick()).empty());
+  CHECK_FALSE(refusal(ready, longer, few_elements()).empty());
   Random r(1);
   for (size_t i = 0; i < 400; ++i) {  // every byte of the header, and some others
     std::vector<uint8_t> bad = bytes;
     const size_t at = i < 200 ? i : r.next_u32() % bytes.size();
     bad[at] = uint8_t(bad[at] ^ (1u << (r.next_u32() % 8)));
-    CHECK_FALSE(refusal(ready, bad, quick()).empty());
+    CHECK_FALSE(refusal(ready, bad, few_elements()).empty());
   }
 }
 
 TEST_CASE("light that is not finite is refused, wherever it is") {
   const Ready ready(lit_room(0.5f));
-  const RadiositySolution good = ready.solve(quick());
-  REQUIRE(refusal(ready, save_solution(ready.scene, good), quick()).empty());
+  const RadiositySolution good = ready.solve(few_elements());
+  REQUIRE(refusal(ready, save_solution(ready.scene, good), few_elements()).empty());
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   using Spoil = void (*)(RadiositySolution&, float);
@@ -140,13 +140,13 @@ TEST_CASE("light that is not finite is refused, wherever it is") {
       CAPTURE(v);
       RadiositySolution s = good;
       places[i](s, v);
-      CHECK_FALSE(refusal(ready, save_solution(ready.scene, s), quick()).empty());
+      CHECK_FALSE(refusal(ready, save_solution(ready.scene, s), few_elements()).empty());
     }
 }
 
 TEST_CASE("options that are not finite are refused when the file's own settings are used") {
   const Ready ready(lit_room(0.5f));
-  const RadiositySolution good = ready.solve(quick());
+  const RadiositySolution good = ready.solve(few_elements());
   using Spoil = void (*)(RadiosityOptions&, float);
   const Spoil places[] = {
       [](RadiosityOptions& o, float v) { o.unshot_fraction = v; },
@@ -170,12 +170,12 @@ TEST_CASE("options that are not finite are refused when the file's own settings 
 
 TEST_CASE("a different number of stored contributions is refused") {
   const Ready ready(lit_room(0.5f));
-  RadiositySolution s = ready.solve(quick());
+  RadiositySolution s = ready.solve(few_elements());
   const size_t points = s.general.size();
-  for (const uint32_t other : {0u, quick().stored_per_point - 1, quick().stored_per_point + 1}) {
+  for (const uint32_t other : {0u, few_elements().stored_per_point - 1, few_elements().stored_per_point + 1}) {
     CAPTURE(other);
     s.stored_per_point = other;
     s.stored.resize(points * other);
-    CHECK_FALSE(refusal(ready, save_solution(ready.scene, s), quick()).empty());
+    CHECK_FALSE(refusal(ready, save_solution(ready.scene, s), few_elements()).empty());
   }
 }
