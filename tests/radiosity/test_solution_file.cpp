@@ -69,7 +69,8 @@ TEST_CASE("another scene or other settings are refused") {
   const char* what = "another scene";
   const char* settings = "other settings";
   CHECK(refusal(Ready(lit_room(0.51f)), bytes, few_elements()).find(what) != std::string::npos);
-  CHECK(refusal(Ready(lit_room(0.5f, 4.1f)), bytes, few_elements()).find(what) != std::string::npos);
+  CHECK(refusal(Ready(lit_room(0.5f, 4.1f)), bytes, few_elements()).find(what) !=
+        std::string::npos);
   RadiosityOptions o = few_elements();
   o.tolerance *= 2;
   CHECK(refusal(ready, bytes, o).find(settings) != std::string::npos);
@@ -172,7 +173,8 @@ TEST_CASE("a different number of stored contributions is refused") {
   const Ready ready(lit_room(0.5f));
   RadiositySolution s = ready.solve(few_elements());
   const size_t points = s.general.size();
-  for (const uint32_t other : {0u, few_elements().stored_per_point - 1, few_elements().stored_per_point + 1}) {
+  for (const uint32_t other :
+       {0u, few_elements().stored_per_point - 1, few_elements().stored_per_point + 1}) {
     CAPTURE(other);
     s.stored_per_point = other;
     s.stored.resize(points * other);
