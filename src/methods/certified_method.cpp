@@ -137,7 +137,7 @@ std::unique_ptr<Integrator> cached_paths_if_cheaper(const MethodPlan& plan, cons
                                              most, in.cells->seed, in.cells->counters);
   const GatherTrial trial =
       try_gathers({gathers, reflected, *cells, *in.cells->view, gather_options(in, *cells),
-                   std::max(in.settings.viewing_rays, 1), in.settings.error, cached},
+                   std::max(in.settings.viewing_rays, 1), error, cached},
                   in.cells->stop, in.cells->counters);
   const bool is_cheaper = cached.rays < std::min(plan.forecast->rays, trial.cost);
   std::string reason =

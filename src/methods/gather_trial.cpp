@@ -51,10 +51,10 @@ ViewingRays rays_of(const PictureView& view, const GatherTrialInput& in) {
   return rays;
 }
 
-// Appends, for each pixel, the number of viewing rays that it needs for the error.
-void add_wanted(const RadianceBatch& seen, const GatherTrialInput& in,
-                std::vector<double>& wanted) {
+// Returns the variance of one ray of each pixel over its squared allowed error.
+std::vector<double> own_wanted(const RadianceBatch& seen, const GatherTrialInput& in) {
   const auto n = size_t(in.viewing_rays);
+  std::vector<double> own;
   for (size_t first = 0; first + n <= seen.direct.size(); first += n) {
     double sum = 0, squares = 0;
     for (size_t i = first; i < first + n; ++i) {
@@ -65,22 +65,38 @@ void add_wanted(const RadianceBatch& seen, const GatherTrialInput& in,
     }
     const double mean = sum / double(n), of_pixel = squares - sum * mean,
                  variance = std::max(of_pixel, 0.0) / double(std::max<size_t>(n - 1, 1));
-    wanted.push_back(variance / sqr(allowed_error(in.error, mean, in.cached.typical)));
+    own.push_back(variance / sqr(allowed_error(in.error, mean, in.cached.typical)));
   }
+  return own;
 }
 
-// Returns the mean cost of a pixel's further viewing rays: like first ones, which cost `of_first`
-// each, or as cached paths, which vary more.
+// Appends, for each pixel of a window, the number of rays that it alone would take. The few rays of
+// one pixel may miss what varies in it, so each is judged with its neighbours.
+void add_wanted(const std::vector<double>& own, std::vector<double>& wanted) {
+  constexpr int side = GatherRecords::tile_side;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      double sum = 0, pixels = 0;
+      for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, side - 1); ++ny)
+        for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, side - 1); ++nx, ++pixels)
+          sum += own[size_t(ny * side + nx)];
+      wanted.push_back(sum / pixels);
+    }
+}
+
+// Returns the mean cost of a pixel's further viewing rays for the same error as that of cached
+// paths: like first ones, which cost `of_first` each, or as cached paths, which vary more.
 double cost_of_further(const std::vector<double>& wanted, double of_first,
                        const GatherTrialInput& in) {
-  const double first = in.viewing_rays,
-               pixels = double(in.view.image.width()) * in.view.image.height(),
-               of_cached = in.cached.rays / pixels / in.cached.viewing_rays;
+  const double pixels = double(in.view.image.width()) * in.view.image.height(),
+               of_cached = in.cached.rays / pixels / in.cached.viewing_rays,
+               proportion = proportion_of_samples(wanted, 0);
   double sum = 0;
   for (const double w : wanted) {
-    if (w <= first) continue;
-    const double rays = w > sqr(most_even_samples) ? most_even_samples * std::sqrt(w) : w;
-    sum += std::min((rays - first) * of_first, std::max(rays, in.cached.viewing_rays) * of_cached);
+    const double rays = proportion * share_of_samples(w, 0);
+    if (rays <= in.viewing_rays) continue;
+    sum += std::min((rays - in.viewing_rays) * of_first,
+                    std::max(rays, in.cached.viewing_rays) * of_cached);
   }
   return sum / double(wanted.size());
 }
@@ -116,7 +132,7 @@ GatherTrial try_gathers(const GatherTrialInput& in, const StopFlag& stop, Counte
     of_first += cost_of(first);
     counters += gathering;
     counters += first;
-    add_wanted(out, in, wanted);
+    add_wanted(own_wanted(out, in), wanted);
   }
   trial.of_gathers = of_gathers / looked_at * pixels;
   trial.of_first = of_first / looked_at * pixels;

@@ -22,7 +22,7 @@ struct GatherTrialInput {
   const PictureView& view;
   const GatherOptions& options;
   int viewing_rays = 1;        // first ones of each pixel
-  double error = 0.01;         // asked error of a pixel
+  double error = 0.01;         // of the picture, as for `cached`
   const PathForecast& cached;  // of paths that end at the cells
 };
 

@@ -41,37 +41,58 @@ double planned_variance(double rays, double most_even) {
   return most_even > 0 && rays > sqr(most_even) ? sqr(rays / most_even) : rays;
 }
 
+// Returns what first rays see: by the first pass, and by test rays of the same kind if there are
+// any. The variance is at least the planned one, which counts what a pixel's neighbours show.
+TestResult seen_by_first_rays(std::span<const TestPixel> pixels, std::span<const TestedWay> tested,
+                              double most_even) {
+  const auto count = double(pixels.size());
+  TestResult first;
+  for (const TestPixel& p : pixels) {
+    first.rays += p.rays;
+    first.mean += p.luminance / p.allowed / count;
+    first.variance += planned_variance(p.planned, most_even) / count;
+  }
+  for (const TestedWay& t : tested) {
+    if (!t.way.is_like_first) continue;
+    const TestResult seen = seen_by(pixels, t);
+    const double rays = first.rays + seen.rays, share = seen.rays / rays;
+    first.mean += share * (seen.mean - first.mean);
+    first.variance += share * std::max(seen.variance - first.variance, 0.0);
+    first.rays = rays;
+  }
+  return first;
+}
+
 }  // namespace
 
 FurtherChoice choose_further_way(std::span<const TestPixel> pixels, double cost_of_first,
                                  std::span<const TestedWay> tested, double most_even) {
   TROFFER_CHECK(pixels.size() == test_pixels);
-  const auto count = double(pixels.size());
   constexpr double least_missing = 0.1;
-  double planned = 0, expected = 0, of_first = 0, first_rays = 0;
-  for (const TestPixel& p : pixels) {
-    first_rays += p.rays;
-    planned += p.planned / count;
-    expected += p.luminance / p.allowed / count;
-    of_first += planned_variance(p.planned, most_even) / count;
-  }
+  const TestResult first = seen_by_first_rays(pixels, tested, most_even);
+  double planned = 0;
+  for (const TestPixel& p : pixels) planned += p.planned / double(pixels.size());
   TROFFER_CHECK(planned > 0);
-  const double error_of_expected = std::sqrt(of_first / first_rays);
-  FurtherChoice best{further_ways.front(), planned, 1, planned * cost_of_first};
-  double least = of_first * cost_of_first;
+  const auto choice = [&](const FurtherWay& way, double variance, double cost) {
+    const double rays = samples_for({.chance = variance}, 1, most_even, 0);
+    return FurtherChoice{way, rays, rays / planned, rays * cost};
+  };
+  FurtherChoice best = choice(further_ways.front(), first.variance, cost_of_first);
+  double least = first.variance * cost_of_first;
   for (const TestedWay& t : tested) {
+    if (t.way.is_like_first) continue;
     const TestResult seen = seen_by(pixels, t);
     // Light that no test ray has brought comes with a chance of at most 3 / n (95 %).
-    const double missing = std::max(expected - seen.mean, 0.0), rare = sqr(missing) * seen.rays / 3,
-                 variance = std::max(seen.variance + rare, of_first),
-                 work = variance * t.cost_of_ray;
-    const double noise = std::hypot(error_of_expected, std::sqrt(seen.variance / seen.rays));
+    const double missing = std::max(first.mean - seen.mean, 0.0),
+                 rare = sqr(missing) * seen.rays / 3,
+                 variance = std::max(seen.variance + rare, first.variance),
+                 work = variance * t.cost_of_ray,
+                 noise = std::sqrt(first.variance / first.rays + seen.variance / seen.rays);
     const bool may_miss_light =
-        2 * seen.mean < expected || missing > least_missing * expected + 2 * noise;
+        2 * seen.mean < first.mean || missing > least_missing * first.mean + 2 * noise;
     if (may_miss_light || work >= least) continue;
     least = work;
-    const double rays = samples_for({.chance = variance}, 1, most_even, 0);
-    best = {t.way, rays, rays / planned, rays * t.cost_of_ray};
+    best = choice(t.way, variance, t.cost_of_ray);
   }
   return best;
 }

@@ -2,8 +2,9 @@
 // picture's integrator at one of several effort divisors, or by its cheaper integrator
 // (Integrator::cheaper). All have the same mean. A few test rays of each measure the variance of a
 // ray and its cost; the choice has the least product of both, which is the cost of a given error.
-// The first rays need no test: the first pass has measured them. Test rays enter no result, so the
-// choice leaves the mean of every pixel unbiased.
+// The first pass has measured first rays; where they cost much, they are tested, too, because the
+// few of a pixel do not show rare light. Test rays enter no result, so the choice leaves the mean
+// of every pixel unbiased.
 #pragma once
 
 #include <array>
@@ -19,9 +20,9 @@ struct FurtherWay {
   bool is_cheaper = false;      // by Integrator::cheaper
   bool is_like_first = false;   // as carefully as the first rays of a pixel
 };
-// Ways in the order in which they are tested: cheap tests first.
-constexpr std::array<FurtherWay, 5> further_ways{
-    {{1, false, true}, {.is_cheaper = true}, {16}, {4}, {1}}};
+// All ways. They are tested from the last to the first: cheap tests first.
+constexpr std::array<FurtherWay, 4> further_ways{
+    {{1, false, true}, {4}, {16}, {.is_cheaper = true}}};
 
 // Pixels of a tile whose further rays are tested, and the first test rays of each.
 constexpr size_t test_pixels = 4;
@@ -50,10 +51,10 @@ struct TestPixel {
 };
 
 // Returns the way of least cost for a given error. Rays like the first ones take `cost_of_first`
-// each and vary as planned; no other way is taken to vary less. Ways whose test rays bring less
-// than half the light that the first rays have seen are out: the rest may come in rays so rare and
-// bright that no test shows their variance, such as samples of a lamp behind a pinhole. most_even:
-// as in samples_for() (sample_spread.h).
+// each and vary as planned, or more if their tests show it; no other way is taken to vary less.
+// Ways whose test rays bring less than half the light that the first rays have seen are out: the
+// rest may come in rays so rare and bright that no test shows their variance, such as samples of a
+// lamp behind a pinhole. most_even: as in samples_for() (sample_spread.h).
 FurtherChoice choose_further_way(std::span<const TestPixel> pixels, double cost_of_first,
                                  std::span<const TestedWay> tested, double most_even);
 

@@ -184,7 +184,7 @@ FurtherChoice TileTracer::choose_way(const PixelRect& tile, double cost_of_first
   const double pixels_of_tile = wanted / planned;
   std::vector<TestedWay> tested;
   best = choose_further_way(before, cost_of_first, tested, further_.most_even());
-  for (size_t k = 1; k < further_ways.size(); ++k) {
+  for (size_t k = further_ways.size(); k-- > 0;) {
     const FurtherWay& way = further_ways[k];
     if (way.is_cheaper && integrator_.cheaper() == nullptr) continue;
     const double budget = share * best.cost * pixels_of_tile,
@@ -217,7 +217,8 @@ bool TileTracer::further_rays(const PixelRect& tile, TileWork& w) {
   const auto wanted = [&](const Pixel2& p) {
     constexpr double most = 1 << 16;
     const double first = further_.first_spp(), own = further_.at(p.x, p.y).samples - first,
-                 rays = choice.way.is_like_first ? own : 0.5 * (own * choice.times + choice.rays);
+                 rays = choice.way.is_like_first ? own * choice.times
+                                                 : 0.5 * (own * choice.times + choice.rays);
     return uint32_t(std::min(first + std::ceil(rays), most));
   };
   std::stable_sort(pixels.begin(), pixels.end(), [&](const Pixel2& a, const Pixel2& b) {
