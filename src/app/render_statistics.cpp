@@ -35,10 +35,19 @@ nlohmann::ordered_json plan_json(const MethodPlan& plan) {
   return j;
 }
 
+// Work that costs.h weighs, besides viewing rays.
+nlohmann::ordered_json work_json(const Counters& n) {
+  return {{"extension_rays", n.extension_rays}, {"shadow_rays", n.shadow_rays},
+          {"clusters", n.clusters},             {"masks", n.masks},
+          {"mask_facets", n.mask_facets},       {"points", n.points}};
+}
+
 nlohmann::ordered_json preparation_json(const Counters& n) {
-  return {{"extension_rays", n.extension_rays},
-          {"shadow_rays", n.shadow_rays},
-          {"nan_samples", n.nan_samples}};
+  nlohmann::ordered_json j = work_json(n);
+  j["viewing_rays"] = n.viewing_rays;
+  j["pairs"] = n.lit_certified + n.masked + n.mixed;
+  j["nan_samples"] = n.nan_samples;
+  return j;
 }
 
 }  // namespace
@@ -89,6 +98,7 @@ std::string statistics_json(const RenderCommand& c, const RenderResult& result,
                   {"seconds", s.cells.seconds}};
   j["peak_memory_mb"] = peak_memory_mb();
   j["extension_rays"] = n.extension_rays;
+  j["work"] = work_json(n);
   j["plan"] = plan_json(s.plan);
   j["spp"] = c.options.spp;
   j["max_spp"] = most_viewing_rays(c.options).in_pixel;

@@ -51,21 +51,24 @@ ViewingRays rays_of(const PictureView& view, const GatherTrialInput& in) {
   return rays;
 }
 
-// Returns the variance of one ray of each pixel over its squared allowed error.
+// Returns the variance of one ray of each pixel over its squared allowed error, without the known
+// part of its light, which surrogate samples resolve.
 std::vector<double> own_wanted(const RadianceBatch& seen, const GatherTrialInput& in) {
   const auto n = size_t(in.viewing_rays);
+  const auto luminance_of = [](const Rgb& l) { return is_finite(l) ? double(luminance(l)) : 0; };
   std::vector<double> own;
   for (size_t first = 0; first + n <= seen.direct.size(); first += n) {
-    double sum = 0, squares = 0;
+    double all = 0, sum = 0, squares = 0;
     for (size_t i = first; i < first + n; ++i) {
-      const Rgb all = seen.direct[i] + seen.indirect[i];
-      const double v = is_finite(all) ? double(luminance(all)) : 0;
-      sum += v;
-      squares += sqr(v);
+      const double light = luminance_of(seen.direct[i] + seen.indirect[i]),
+                   rest = light - luminance_of(seen.known[i].direct + seen.known[i].indirect);
+      all += light / double(n);
+      sum += rest;
+      squares += sqr(rest);
     }
-    const double mean = sum / double(n), of_pixel = squares - sum * mean,
+    const double of_pixel = squares - sqr(sum) / double(n),
                  variance = std::max(of_pixel, 0.0) / double(std::max<size_t>(n - 1, 1));
-    own.push_back(variance / sqr(allowed_error(in.error, mean, in.cached.typical)));
+    own.push_back(variance / sqr(allowed_error(in.error, all, in.cached.typical)));
   }
   return own;
 }
@@ -85,19 +88,24 @@ void add_wanted(const std::vector<double>& own, std::vector<double>& wanted) {
 }
 
 // Returns the mean cost of a pixel's further viewing rays for the same error as that of cached
-// paths: like first ones, which cost `of_first` each, or as cached paths, which vary more.
+// paths. Every tile of the picture takes all of them in one way: like first ones, which cost
+// `of_first` each, or as cached paths, which vary more.
 double cost_of_further(const std::vector<double>& wanted, double of_first,
                        const GatherTrialInput& in) {
+  constexpr size_t side = GatherRecords::tile_side, of_tile = side / 2;
   const double pixels = double(in.view.image.width()) * in.view.image.height(),
                of_cached = in.cached.rays / pixels / in.cached.viewing_rays,
                proportion = proportion_of_samples(wanted, 0);
-  double sum = 0;
-  for (const double w : wanted) {
-    const double rays = proportion * share_of_samples(w, 0);
+  std::vector<double> like_first(wanted.size() / sqr(of_tile)), cached(like_first.size());
+  for (size_t i = 0; i < wanted.size(); ++i) {
+    const double rays = proportion * share_of_samples(wanted[i], 0);
     if (rays <= in.viewing_rays) continue;
-    sum += std::min((rays - in.viewing_rays) * of_first,
-                    std::max(rays, in.cached.viewing_rays) * of_cached);
+    const size_t x = i % side, row = i / side, tile = row / of_tile * 2 + x / of_tile;
+    like_first[tile] += (rays - in.viewing_rays) * of_first;
+    cached[tile] += std::max(rays, in.cached.viewing_rays) * of_cached;
   }
+  double sum = 0;
+  for (size_t t = 0; t < cached.size(); ++t) sum += std::min(like_first[t], cached[t]);
   return sum / double(wanted.size());
 }
 
@@ -127,6 +135,7 @@ GatherTrial try_gathers(const GatherTrialInput& in, const StopFlag& stop, Counte
     const std::unique_ptr<IntegratorScratch> scratch = in.gathers.make_scratch();
     RadianceBatch out;
     out.reset(rays.size());
+    out.known.assign(rays.size(), {});
     in.gathers.radiance(rays, *scratch, out, first);
     of_gathers += cost_of(gathering);
     of_first += cost_of(first);

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "gather/gather_records.h"
+#include "transport/costs.h"
 #include "transport/integrator.h"
 #include "transport/prepared_scene.h"
 
@@ -33,7 +34,7 @@ PathForecast forecast_paths(const Integrator& paths, const PictureView& view, do
 // Returns how the pixels of a picture by paths are to be sampled.
 PixelSampling sampling_by_paths(const PathForecast& forecast, double error, int most);
 
-// Least cost of making one cell, in rays of paths.
-constexpr double rays_of_cell = 60;
+// Least cost of making one cell, in rays of paths (costs.h): it casts about 24 rays.
+constexpr double rays_of_cell = 24 * (1 + cost_of_cell_ray);
 
 }  // namespace troffer

@@ -203,8 +203,9 @@ FurtherChoice TileTracer::choose_way(const PixelRect& tile, double cost_of_first
 }
 
 bool TileTracer::further_rays(const PixelRect& tile, TileWork& w) {
-  const double cost_of_first = (cost_of(w.before) - double(w.before.surrogates)) /
-                               std::max(double(w.before.viewing_rays), 1.0);
+  const double cost_of_first =
+      (cost_of(w.before) - cost_of_surrogate * double(w.before.surrogates)) /
+      std::max(double(w.before.viewing_rays), 1.0);
   const FurtherChoice choice = choose_way(tile, cost_of_first, w);
   const auto send = [&] {
     trace(choice.way, w);

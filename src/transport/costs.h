@@ -7,16 +7,21 @@
 
 namespace troffer {
 
-// Cost of one mask, of one facet in a mask, and of one point on a source.
+// Costs of a shadow ray, of a surrogate sample, and of what a ray of a cell's row takes besides the
+// ray.
+constexpr double cost_of_shadow_ray = 0.3, cost_of_surrogate = 0.5, cost_of_cell_ray = 1.35;
+// Costs of one mask, of one facet in a mask, and of one point on a source.
 constexpr double cost_of_mask = 0.3, cost_of_mask_facet = 1.0 / 12, cost_of_point = 0.3;
-// Cost of one pair of a cluster and a source, and of one pair of a hit and a source.
+// Cost of a light sample: a point on the light and a shadow ray to it.
+constexpr double cost_of_draw = cost_of_point + cost_of_shadow_ray;
+// Costs of one pair of a cluster and a source, and of one pair of a hit and a source.
 constexpr double cost_of_cluster = 12, cost_of_pair = 0.15;
 
 // Returns the cost of counted rays and masks, in rays.
 inline double cost_of_rays_and_masks(const Counters& n) {
-  return double(n.viewing_rays + n.surrogates + n.extension_rays + n.shadow_rays) +
-         cost_of_mask * double(n.masks) + cost_of_mask_facet * double(n.mask_facets) +
-         cost_of_point * double(n.points);
+  return double(n.viewing_rays + n.extension_rays) + cost_of_shadow_ray * double(n.shadow_rays) +
+         cost_of_surrogate * double(n.surrogates) + cost_of_mask * double(n.masks) +
+         cost_of_mask_facet * double(n.mask_facets) + cost_of_point * double(n.points);
 }
 // Returns the cost of all counted work, in rays. Sources proved dark for whole clusters cost
 // nothing per hit.
