@@ -123,14 +123,14 @@ void ClusterLighting::set_draws(std::span<const uint32_t> members, uint32_t effo
 // independent.
 void ClusterLighting::certify_or_draw(std::span<const uint32_t> members) {
   constexpr size_t few = 4;
-  const double of_draws = cost_of_draw * double(s_.chosen.draws), n = double(members.size());
+  const auto draws = double(s_.chosen.draws), n = double(members.size());
   bool are_drawn = certify_all(sources_.groups(), s_.chosen);
   double rays = (cost_of_cluster / n + cost_of_pair) * double(s_.chosen.certified.size());
   s_.first.clear();
   s_.rest.clear();
   const size_t step = std::max<size_t>(members.size() / few, 1);
   for (size_t i = 0; i < members.size(); ++i)
-    (rays <= of_draws && i % step == 0 && s_.first.size() < few ? s_.first : s_.rest)
+    (rays <= draws && i % step == 0 && s_.first.size() < few ? s_.first : s_.rest)
         .push_back(members[i]);
   if (!s_.first.empty()) {
     if (are_drawn) draw(s_.first);
@@ -138,12 +138,12 @@ void ClusterLighting::certify_or_draw(std::span<const uint32_t> members) {
     certify(s_.first, false);
     rays += (cost_of_rays_and_masks(counters_) - before) / double(s_.first.size());
   }
-  if (rays > of_draws) {
+  if (rays > draws) {
     certify_none(s_.chosen);
     are_drawn = true;
   }
   if (are_drawn) draw(s_.rest);
-  if (rays <= of_draws && !s_.rest.empty()) certify(s_.rest, false);
+  if (rays <= draws && !s_.rest.empty()) certify(s_.rest, false);
 }
 
 // Counts all sky patches as proved dark for these hits.

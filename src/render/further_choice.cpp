@@ -73,8 +73,10 @@ FurtherChoice choose_further_way(std::span<const TestPixel> pixels, double cost_
   double planned = 0;
   for (const TestPixel& p : pixels) planned += p.planned / double(pixels.size());
   TROFFER_CHECK(planned > 0);
+  // A way that varies more takes more rays, for the same error.
+  const double of_first = samples_for({.chance = first.variance}, 1, most_even, 0);
   const auto choice = [&](const FurtherWay& way, double variance, double cost) {
-    const double rays = samples_for({.chance = variance}, 1, most_even, 0);
+    const double rays = first.variance > 0 ? of_first * variance / first.variance : of_first;
     return FurtherChoice{way, rays, rays / planned, rays * cost};
   };
   FurtherChoice best = choice(further_ways.front(), first.variance, cost_of_first);

@@ -12,8 +12,6 @@ namespace troffer {
 constexpr double cost_of_shadow_ray = 0.3, cost_of_surrogate = 0.5, cost_of_cell_ray = 1.35;
 // Costs of one mask, of one facet in a mask, and of one point on a source.
 constexpr double cost_of_mask = 0.3, cost_of_mask_facet = 1.0 / 12, cost_of_point = 0.3;
-// Cost of a light sample: a point on the light and a shadow ray to it.
-constexpr double cost_of_draw = cost_of_point + cost_of_shadow_ray;
 // Costs of one pair of a cluster and a source, and of one pair of a hit and a source.
 constexpr double cost_of_cluster = 12, cost_of_pair = 0.15;
 

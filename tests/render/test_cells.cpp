@@ -230,7 +230,8 @@ TEST_CASE("cells: the estimated error is close to the actual error") {
   CAPTURE(std::sqrt(noise / n) / (mean / n));
   CAPTURE(std::sqrt(told / n) / (mean / n));
   CHECK(std::sqrt(told) > 0.5 * std::sqrt(made));
-  CHECK(std::sqrt(told) < 2 * std::sqrt(made));
+  // Stratified rays err less than their spread shows.
+  CHECK(std::sqrt(told) < 2.5 * std::sqrt(made));
 }
 
 TEST_CASE("cells: a room with mirror, glass and gloss agrees with paths") {
