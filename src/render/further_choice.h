@@ -30,7 +30,7 @@ constexpr uint32_t test_rays_of_pixel = 8;
 struct FurtherChoice {
   FurtherWay way;
   double rays = 0;   // further rays of a pixel of the tile
-  double times = 1;  // the same over the number that was planned for the test pixels
+  double times = 1;  // factor on the further rays planned for the test pixels
   double cost = 0;   // of the further rays of a pixel (costs.h)
 };
 
@@ -43,16 +43,17 @@ struct TestedWay {
 
 // A test pixel, as the first pass left it.
 struct TestPixel {
-  double luminance = 0;  // excludes known radiance if those of the test rays do
+  double luminance = 0;  // without known radiance if the test rays are without it
   double allowed = 1;    // error of the pixel
   double planned = 0;    // further rays
   double rays = 4;       // first rays
 };
 
-// Returns the way of least cost for a given error. Rays like the first ones take `cost_of_first`
-// each and vary as planned; no other way is taken to vary less. Ways whose test rays bring less
-// than half the light that the first rays have seen are out: the rest may come in rays so rare and
-// bright that no test shows their variance, such as samples of a lamp behind a pinhole. most_even:
+// Returns the way of least cost for a given error. A ray like the first ones costs `cost_of_first`,
+// and its variance is the one that the plan assumed. That is a lower bound for every other way. A
+// way is ruled out if its test rays bring less than half the light that the first rays saw: the
+// rest may come in rays so rare and bright that no test shows their variance, such as samples of a
+// lamp behind a pinhole. most_even:
 // as in samples_for() (sample_spread.h).
 FurtherChoice choose_further_way(std::span<const TestPixel> pixels, double cost_of_first,
                                  std::span<const TestedWay> tested, double most_even);
