@@ -34,7 +34,7 @@ struct AnnualRequest {
   std::vector<SensorSpan> grids;  // for the operation of blinds
   const WeatherYear& year;
   const Compass& compass;
-  size_t eyes = 0;  // so many of the last points are eyes, with the line of sight as their normal
+  size_t eyes = 0;  // number of eyes: the last points, whose normals are lines of sight
 };
 
 // Illuminance by way of one path in one state, lx per hour.
@@ -61,9 +61,10 @@ struct AnnualResult {
   // Root mean square over sensors and hours of the standard error, relative to that of the
   // illuminance.
   double relative_error = 0;
-  // The same over sensors, states and Tregenza's patches, for coefficients of reflected light.
+  // Root mean square over sensors, states and Tregenza's patches, for coefficients of reflected
+  // light.
   double relative_error_reflected = 0;
-  size_t cells = 0, links = 0, sources = 0;  // of one replicate, at most
+  size_t cells = 0, links = 0, sources = 0;  // of the replicate that has most of them
   bool is_complete = true;                   // false after a stop
 };
 

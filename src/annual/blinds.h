@@ -30,8 +30,9 @@ struct SunOfPath {
 };
 
 // Operates blinds so that at most 2 % of the sensors of each grid get 1000 lx or more straight from
-// the sun [1]. In each hour, the groups that light most sensors of the grid that far close one
-// after the other, until the rest complies [2]. A group without sun stays open. Groups show state 0
+// the sun [1]. In each hour, groups close one after the other until the grid complies; the
+// group that brings that much sun to the most sensors closes first [2]. A group without sun stays
+// open. Groups show state 0
 // or their last state. A group closes if any grid asks for it. Paths with one state stay as they
 // are.
 StateSchedule lm83_schedule(const std::vector<LightPath>& paths, std::span<const SunOfPath> sun,

@@ -45,7 +45,8 @@ struct DimmedUse {
 
 // Collects daylight at the sensors of each group. A group serves the sensors at which it brings
 // most electric light. In every occupied step, it is dimmed to the least output at which the mean
-// illuminance of its sensors reaches the target, if all groups that light them had that output.
+// illuminance of its sensors reaches the target. Other groups that light these sensors are assumed
+// to have the same output.
 class DimmingYear {
  public:
   DimmingYear(const std::vector<ElectricLight>& lights, double target_lx);

@@ -24,7 +24,7 @@ double disc_solid_angle() {
   return pi * sqr(std::sin(rad_from_deg(sun_angular_radius_deg)));
 }
 
-// What rays find open: a share of them, and the mean transmittance of those.
+// Share of rays that find an opening, and their mean transmittance.
 struct OpenShare {
   double share = 0, transmittance = 0;
 };

@@ -1,9 +1,9 @@
 // Ways by which daylight enters a scene: windows outside of all groups, and window groups such as
 // the windows of one façade. Each group has states, such as blinds up and down. The light of a path
-// is that of a scene in which the windows of all other groups are black.
+// is computed in a scene in which the windows of all other groups are black.
 //
 // The illuminance of a combination of states is the sum over paths. This leaves out light that
-// passes windows of two groups, for example in by one and out by the other.
+// passes windows of two groups, for example in through one and out through the other.
 //
 // References: [1] Ladybug Tools, honeybee-radiance: light paths and states of aperture groups.
 #pragma once
@@ -49,7 +49,7 @@ struct StateSchedule {
   }
 };
 
-// Number of the first state of each path if all states count in one row.
+// Returns the index of each path's first state in a list of the states of all paths.
 std::vector<size_t> first_states(const std::vector<LightPath>& paths);
 
 }  // namespace troffer

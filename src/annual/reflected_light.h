@@ -2,8 +2,8 @@
 // by way of at least one surface. All sources are right-hand sides of one balance of light on
 // cells, E = D + W E, which is solved for blocks of sources.
 //
-// The calculation runs as a few independent replicates. Their mean is the result, and their spread
-// is its error, by whatever way random numbers enter.
+// The calculation runs as a few independent replicates. Their mean is the result. Their spread
+// gives its error, from all random numbers together.
 //
 // References: [1] Tregenza & Waters, "Daylight coefficients", Lighting Research and Technology
 //   15(2), 1983.

@@ -25,7 +25,7 @@ class LitStates {
   size_t paths() const { return first_.size() - 1; }
   LitState& operator[](size_t k) { return states_[k]; }
   const LitState& operator[](size_t k) const { return states_[k]; }
-  // First state of a path; of the path behind the last: size().
+  // Returns the first state of a path; size() for the path number paths().
   size_t first_of(size_t path) const { return first_[path]; }
 
  private:

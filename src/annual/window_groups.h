@@ -14,13 +14,13 @@ namespace troffer {
 // Patterns of names may hold '*' (base/wildcard.h).
 struct WindowState {
   std::string name;
-  std::vector<std::string> shown;  // nodes that only states naming them show, such as blinds
+  std::vector<std::string> shown;  // nodes, such as blinds; absent in states that do not name them
   double transmittance = 1;        // factor on the light that the windows transmit
   std::string material;            // of the windows in this state; empty: their own
 };
 struct WindowGroup {
   std::string name;
-  std::vector<std::string> windows;  // nodes by which light enters; black for other groups' light
+  std::vector<std::string> windows;  // nodes that let light in; black for light of other groups
   std::vector<WindowState> states;   // at least one
 };
 
@@ -31,8 +31,9 @@ std::vector<WindowGroup> read_window_groups(const std::string& path);
 // transmittances of windows that have no transmission to scale.
 void check_window_groups(const Scene& scene, const std::vector<WindowGroup>& groups);
 
-// Returns the scene with group g in state states[g], or with black windows and without its shown
-// nodes if that is empty. Light sources are removed, since indices of lights refer to meshes.
+// Returns the scene with group g in state states[g]. If that is empty, the group's windows are
+// black and its shown nodes absent. Light sources are removed, since indices of lights refer to
+// meshes.
 Scene with_window_states(Scene scene, const std::vector<WindowGroup>& groups,
                          std::span<const std::optional<size_t>> states);
 

@@ -1,5 +1,6 @@
 #include "bsdf/albedo_table.h"
 
+#include "base/gauss_legendre.h"
 #include "base/units.h"
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
@@ -105,14 +106,13 @@ float hemisphere_average(const F& f) {
 // Integrates the piecewise linear interpolant in the fourth root t of c: 2 ∫ E c dc = 8 ∫ E t⁷ dt.
 // On such short intervals the error of three-point Gauss quadrature is below rounding.
 float row_average(const float* row) {
-  constexpr std::array<double, 3> node{0.11270166537925831, 0.5, 0.88729833462074169};
-  constexpr std::array<double, 3> weight{5.0 / 18, 8.0 / 18, 5.0 / 18};
   constexpr double h = 1.0 / double(table_cosines - 1);
   double sum = 0;
   for (size_t k = 0; k + 1 < table_cosines; ++k)
     for (size_t q = 0; q < 3; ++q) {
-      const double t = (double(k) + node[q]) * h;
-      sum += 8 * h * weight[q] * std::pow(t, 7) * lerp(double(row[k]), double(row[k + 1]), node[q]);
+      const double node = gauss_nodes<double>[q], t = (double(k) + node) * h;
+      sum += 8 * h * gauss_weights<double>[q] * std::pow(t, 7) *
+             lerp(double(row[k]), double(row[k + 1]), node);
     }
   return float(std::min(sum, 1.0));
 }

@@ -39,12 +39,13 @@ struct PointsSeen {
 
 // One draw of the error of each cell by itself: luminance.
 struct CellErrors {
-  std::vector<float> by_rows;  // by the choice of its rays, and partly of the hits that they leave
+  // by the choice of its rays and, partly, of the hits where they start
+  std::vector<float> by_rows;
   std::vector<float> by_hits;  // by the choice of hits at which direct light is computed
 };
 
-// Variances, averaged over points. Each point's is weighted by the mean of 1 / light² of the point,
-// all light included, and 1 / mean² of the list.
+// Relative variances, averaged over points. A point's variance is multiplied by the mean of two
+// numbers: 1 / light² for all light of the point, and 1 / light² for the mean light of the list.
 struct PointsNoise {
   double by_rows = 0, by_hits = 0;  // by the errors of CellErrors
   double by_gather = 0;             // by gather rays
@@ -60,8 +61,8 @@ PointsNoise noise_at_points(const PointsSeen& points, const std::vector<float>& 
                             const CellErrors& off, const GatheringPoints& how, uint64_t seed,
                             int threads);
 
-// Returns the factor for the number of rays of cells, at least 1, that makes the time for a given
-// error least. A ray of a cell costs as much as one of a point. Let G be the number of all other
+// Returns the factor on the number of rays of cells, at least 1, that minimises the time for a
+// given error. A ray of a cell costs as much as one of a point. Let G be the number of all other
 // rays, R that of the rays of cells, V the variance that these cause, and U all other variance.
 // With R' rays of cells, time times variance is (G + R') (U + V R / R'), which is least for R'² = G
 // V R / U.

@@ -1,4 +1,4 @@
-// Tells over which cells light differs so much that its mean says too little.
+// Finds cells over which light varies so much that their mean does not describe it.
 #pragma once
 
 #include "cells/cell_map.h"

@@ -19,11 +19,11 @@ namespace {
 constexpr size_t max_polygons = 1000;
 constexpr size_t max_corners = 64;
 
-constexpr double flatness = 1e-4;      // distance from the plane, relative to the component's size
 constexpr double straightness = 1e-5;  // distance of a corner from its neighbours' line, relative
-                                       // to the size
+                                       // to the component's size
 constexpr double area_agreement = 1e-3;  // relative difference between outline and triangles
-constexpr double float_rounding = 4e-7;  // relative rounding of a coordinate in single precision
+constexpr double float_rounding = 4e-7;  // relative rounding of a coordinate in single precision;
+                                         // at most plane_rounding() of light/polygon.h
 
 using Triangles = std::vector<uint32_t>;  // indices into Mesh::triangles, ascending
 
@@ -130,8 +130,9 @@ std::optional<std::vector<uint32_t>> boundary_loop(const std::vector<Edge>& edge
   return loop;
 }
 
-// Plane of a component: every corner lies within `flatness` of it, and every triangle faces along
-// `normal`.
+// Plane of a component: every corner lies in it but for rounding, and every triangle faces along
+// `normal`. A triangle that stood out farther would hide the polygon from shadow rays, which end
+// just before the polygon's plane.
 struct Plane {
   Vec3d normal;  // unit
   double size = 0, area = 0;
@@ -153,7 +154,6 @@ std::optional<Plane> plane_of(const Mesh& mesh, const Triangles& triangles) {
   plane.size = box.diagonal();
   const Vec3d far = max(abs(box.lower), abs(box.upper));
   plane.rounding = float_rounding * std::max({far.x, far.y, far.z});
-  const double tolerance = flatness * plane.size + plane.rounding;
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   for (const uint32_t t : triangles) {
     if (!(dot(vector_area(mesh, t), plane.normal) > 0)) return std::nullopt;
@@ -163,7 +163,7 @@ std::optional<Plane> plane_of(const Mesh& mesh, const Triangles& triangles) {
       highest = std::max(highest, height);
     }
   }
-  if (highest - lowest > tolerance) return std::nullopt;
+  if (highest - lowest > plane.rounding) return std::nullopt;
   return plane;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "light/guide_table.h"
+
 namespace troffer {
 
 namespace {
@@ -20,44 +22,6 @@ float sample_line(float a, float b, float u) {
 }
 float invert_line(float a, float b, float t) {
   return t * (2 * a + (b - a) * t) / (a + b);
-}
-
-// Returns the index i with cdf[i] <= u < cdf[i + 1], and rescales u to that step. guide: as filled
-// by fill_guide().
-int choose(const float* cdf, const uint32_t* guide, size_t n, float& u) {
-  size_t i = guide[std::min(size_t(u * float(n)), n - 1)];
-  while (i > 0 && cdf[i] > u) --i;
-  while (i + 1 < n && cdf[i + 1] <= u) ++i;
-  const float step = cdf[i + 1] - cdf[i];
-  u = step > 0 ? std::clamp((u - cdf[i]) / step, 0.0f, 1.0f) : 0.0f;
-  return int(i);
-}
-
-// Sets guide[k] to the step that holds k / n, from where a search takes two steps on average.
-void fill_guide(const float* cdf, size_t n, uint32_t* guide) {
-  size_t i = 0;
-  for (size_t k = 0; k < n; ++k) {
-    while (i + 1 < n && cdf[i + 1] <= float(k) / float(n)) ++i;
-    guide[k] = uint32_t(i);
-  }
-}
-
-// Sets cdf to the running sums of `weights` over their total, ending with 1. Returns the total.
-double fill_cdf(const std::vector<double>& weights, float* cdf) {
-  double total = 0;
-  for (const double w : weights) total += w;
-  double sum = 0;
-  cdf[0] = 0;
-  for (size_t i = 0; i < weights.size(); ++i) {
-    sum += weights[i];
-    cdf[i + 1] = total > 0 ? float(sum / total) : 1.0f;
-  }
-  // A last step of weight zero must have zero width in spite of rounding.
-  for (size_t i = weights.size(); i > 0 && total > 0; --i) {
-    cdf[i] = 1;
-    if (weights[i - 1] > 0) break;
-  }
-  return total;
 }
 
 }  // namespace
@@ -137,8 +101,8 @@ float DirectionTable::pdf_at(const Cell& c, const Vec2& uv) const {
 Vec3 DirectionTable::sample(const Vec2& u, float& pdf) const {
   Cell c;
   float along_y = u.y, along_x = u.x;
-  c.y = choose(cdf_y_.data(), guide_y_.data(), rows(), along_y);
-  c.x = choose(row_cdf(c.y), guide_x_.data() + size_t(c.y) * columns(), columns(), along_x);
+  c.y = choose_step(cdf_y_.data(), guide_y_.data(), rows(), along_y);
+  c.x = choose_step(row_cdf(c.y), guide_x_.data() + size_t(c.y) * columns(), columns(), along_x);
   const Corners n = corners(c);
   c.place.y = sample_line(n.at00 + n.at10, n.at01 + n.at11, along_y);
   c.place.x =

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/gauss_legendre.h"
 #include "base/units.h"
 #include "light/arctangent.h"
 
@@ -99,18 +100,16 @@ namespace {
 //   area_and_height: the cell's area times the height of x over its plane.
 float quadrature_irradiance(const Vec3& corner, const Vec3& gu, const Vec3& gv, float n0, float nu,
                             float nv, float area_and_height) {
-  constexpr float nodes[3] = {0.11270166538f, 0.5f, 0.88729833462f};
-  constexpr float weights[3] = {5.0f / 18, 8.0f / 18, 5.0f / 18};
   const float q0 = dot(corner, corner), qu = 2 * dot(corner, gu), qv = 2 * dot(corner, gv);
   const float uu = dot(gu, gu), uv = 2 * dot(gu, gv), vv = dot(gv, gv);
   float sum = 0;
-  for (int i = 0; i < 3; ++i) {
-    const float a = nodes[i];
-    for (int j = 0; j < 3; ++j) {
-      const float b = nodes[j];
+  for (size_t i = 0; i < 3; ++i) {
+    const float a = gauss_nodes<float>[i];
+    for (size_t j = 0; j < 3; ++j) {
+      const float b = gauss_nodes<float>[j];
       const float cosine = n0 + a * nu + b * nv;  // cosine times distance
       const float square = q0 + a * (qu + a * uu + b * uv) + b * (qv + b * vv);
-      sum += weights[i] * weights[j] * cosine / (square * square);
+      sum += gauss_weights<float>[i] * gauss_weights<float>[j] * cosine / (square * square);
     }
   }
   return sum * area_and_height;

@@ -13,6 +13,8 @@ namespace {
 
 // lower bound of projected area, relative to the largest face
 constexpr float least_area_share = 0.01f;
+// rounding of atan2() at the first and last angle of a web, radians
+constexpr float angle_slack = 1e-5f;
 
 // Returns i with angles[i] <= x <= angles[i + 1]. t: position of x between them.
 size_t step_of(const std::vector<float>& angles, float x, float& t) {
@@ -29,13 +31,12 @@ float intensity(const LightWeb& web, const Vec3& w) {
   const auto axes = axes_of(web.pole);
   const Vec3 v{dot(w, axes[0]), dot(w, axes[1]), dot(w, axes[2])};
   const float height = std::atan2(std::sqrt(v.x * v.x + v.y * v.y), v.z);
-  constexpr float slack = 1e-5f;
-  if (height < web.vertical_angles_rad.front() - slack ||
-      height > web.vertical_angles_rad.back() + slack)
+  if (height < web.vertical_angles_rad.front() - angle_slack ||
+      height > web.vertical_angles_rad.back() + angle_slack)
     return 0;
   float turn = std::atan2(v.y, v.x);
-  if (turn < web.horizontal_angles_rad.front() - slack) turn += 2 * pi_f;
-  if (turn > web.horizontal_angles_rad.back() + slack) return 0;
+  if (turn < web.horizontal_angles_rad.front() - angle_slack) turn += 2 * pi_f;
+  if (turn > web.horizontal_angles_rad.back() + angle_slack) return 0;
   float s = 0, t = 0;
   const size_t i = step_of(web.horizontal_angles_rad, turn, s),
                j = step_of(web.vertical_angles_rad, height, t);
@@ -110,11 +111,10 @@ void add_seen(const Vec3& face, size_t n, const float* __restrict x, const float
 // directions outside the web by height = -1.
 TROFFER_MULTIVERSION
 void keep_within(const LightWeb& web, size_t n, float* __restrict height, float* __restrict turn) {
-  constexpr float slack = 1e-5f;
-  const float least_turn = web.horizontal_angles_rad.front() - slack,
-              most_turn = web.horizontal_angles_rad.back() + slack,
-              least = web.vertical_angles_rad.front() - slack,
-              most = web.vertical_angles_rad.back() + slack;
+  const float least_turn = web.horizontal_angles_rad.front() - angle_slack,
+              most_turn = web.horizontal_angles_rad.back() + angle_slack,
+              least = web.vertical_angles_rad.front() - angle_slack,
+              most = web.vertical_angles_rad.back() + angle_slack;
   for (size_t i = 0; i < n; ++i) {
     turn[i] += turn[i] < least_turn ? 2 * pi_f : 0.0f;
     const bool is_within = (height[i] >= least) & (height[i] <= most) & (turn[i] <= most_turn);

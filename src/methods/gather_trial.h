@@ -12,7 +12,7 @@ namespace troffer {
 struct GatherTrial {
   double cost = 0;        // of the whole picture, in rays (costs.h)
   double of_gathers = 0;  // the part that the gathers take
-  double of_first = 0;    // and that of the first viewing rays
+  double of_first = 0;    // the part that the first viewing rays take
 };
 
 struct GatherTrialInput {
@@ -27,8 +27,8 @@ struct GatherTrialInput {
 };
 
 // Gathers in a few windows, traces their first viewing rays, and estimates from these what the
-// further ones will cost. Returns a cost of 0 if the picture is so small that a trial would not
-// repay, and after a stop. Adds its work to `counters`.
+// further ones will cost. Returns a cost of 0 after a stop, and for pictures so small that a trial
+// would not pay off. Adds its work to `counters`.
 GatherTrial try_gathers(const GatherTrialInput& in, const StopFlag& stop, Counters& counters);
 
 }  // namespace troffer

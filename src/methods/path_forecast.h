@@ -21,8 +21,8 @@ struct PathForecast {
   double evenness = 0;      // of a pixel's paths (PixelSampling::evenness)
   double proportion = 0;    // PixelSampling::proportion
   double typical = 0;       // usual luminance of the picture (allowed_error.h)
-  // Budget for making cells, in rays: `rays` less the least that a picture by cells needs besides.
-  // Negative: paths cost less even if cells are free.
+  // Budget for making cells, in rays: `rays` minus the least cost of all other work of a picture by
+  // cells. Negative: paths cost less even if cells are free.
   double rays_for_cells = 0;
 };
 

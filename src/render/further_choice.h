@@ -31,7 +31,7 @@ constexpr uint32_t test_rays_of_pixel = 8;
 struct FurtherChoice {
   FurtherWay way;
   double rays = 0;   // further rays of a pixel of the tile
-  double times = 1;  // the same over the number that was planned for the test pixels
+  double times = 1;  // factor on the further rays planned for the test pixels
   double cost = 0;   // of the further rays of a pixel (costs.h)
 };
 
@@ -44,7 +44,7 @@ struct TestedWay {
 
 // A test pixel, as the first pass left it.
 struct TestPixel {
-  double luminance = 0;  // excludes known radiance if those of the test rays do
+  double luminance = 0;  // without known radiance if the test rays are without it
   double allowed = 1;    // error of the pixel
   double planned = 0;    // further rays
   double rays = 4;       // first rays

@@ -152,12 +152,12 @@ void find_unoccluded(const ShadowCluster& cluster, std::span<const LightRequest>
                    [&](uint32_t a, uint32_t b) { return strength[a] > strength[b]; });
 }
 
-// Error and cost limits of one source's masks. A ray costs about as much as 12 facets in a mask. A
-// source with the share s of the light is worth at most s / (4 E²) rays, each of variance ¼ or
-// less. A mask with more facets than these rays pay for is not worth its cost.
+// Error and cost limits of one source's masks. A source with the share s of the light is worth at
+// most s / (4 E²) rays, each of variance ¼ or less. A mask with more facets than these rays pay for
+// is not worth its cost.
 MaskBudget mask_budget_of(const ShadowCluster& cluster, const LightRequest& request,
                           const CertifiedOptions& options, CertifiedMemory& m) {
-  constexpr double facets_per_ray = 12, least_budget = 256, least_far_budget = 64,
+  constexpr double least_budget = 256, least_far_budget = 64,
                    most_budget = facets_per_ray * most_rays_of_receiver;
   MaskBudget p;
   p.error = options.mask_error;

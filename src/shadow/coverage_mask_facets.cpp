@@ -195,7 +195,7 @@ void FacetList::add_batch(const MaskFrame& frame, const FacetToAdd* const* facet
 }
 
 void FacetList::add_many(const MaskFrame& frame, std::span<const FacetToAdd> facets) {
-  constexpr size_t lanes = 16;
+  constexpr size_t lanes = FacetBatch<3>::lanes;
   const FacetToAdd *triangles[lanes], *quads[lanes];
   size_t triangle_count = 0, quad_count = 0;
   const auto flush_triangles = [&] {
@@ -260,7 +260,7 @@ void copy_unsettled(const std::vector<FacetBatch<edges>>& from, size_t from_coun
 
 // Summed lengths of edges: of all, and of those parallel to either side of the source.
 struct alignas(64) EdgeLengths {
-  static constexpr int lanes = 16;
+  static constexpr int lanes = FacetBatch<3>::lanes;
   float all[lanes] = {}, along_u[lanes] = {}, along_v[lanes] = {};
 };
 

@@ -10,6 +10,7 @@
 #include "shadow/cell_points.h"
 #include "shadow/pilot_rays.h"
 #include "shadow/trace_rays.h"
+#include "shadow/vector_lanes.h"
 
 namespace troffer {
 
@@ -79,15 +80,14 @@ void shorten_segments(size_t n, const Vec3& shift, float end, float* __restrict 
 TROFFER_MULTIVERSION
 float add_up(size_t n, const float* __restrict weights, const uint8_t* __restrict is_hidden,
              float control, float unit, float* __restrict values) {
-  constexpr size_t lanes = 16;
-  float sums[lanes] = {};
+  float sums[vector_lanes] = {};
   for (size_t i = 0; i < n; ++i) {
     const float free = weights[i] > 0 && is_hidden[i] == 0 ? weights[i] : 0.0f;
     values[i] = (free - control * std::abs(weights[i])) * unit;
   }
-  const size_t whole = n / lanes * lanes;
-  for (size_t i = 0; i < whole; i += lanes)
-    for (size_t k = 0; k < lanes; ++k) sums[k] += values[i + k];
+  const size_t whole = n / vector_lanes * vector_lanes;
+  for (size_t i = 0; i < whole; i += vector_lanes)
+    for (size_t k = 0; k < vector_lanes; ++k) sums[k] += values[i + k];
   for (size_t i = whole; i < n; ++i) sums[i - whole] += values[i];
   float sum = 0;
   for (const float v : sums) sum += v;

@@ -12,9 +12,6 @@ namespace {
 
 // Limit of nested halvings of a cell: 4 × 4 parts of a whole face of the cube.
 constexpr int most_halvings = 4;
-// Cost of a ray to a source at infinity, in facets of a mask. Proofs may cost about as much as the
-// cluster's rays to all sources would, in proportion to the source's share of the light.
-constexpr double facets_per_far_ray = 12;
 // Costs in facets of a mask: of gathering a list, of each facet found, of testing a large facet,
 // and of a mask.
 constexpr double cost_of_gather = 1000, cost_of_found = 10, cost_of_large = 5,
@@ -107,7 +104,7 @@ class SkyPatchDivision {
       all += std::max(double(p.seen[m]) + light + double(p.rest[m]), light);
     }
     const double rays = rays_for_error(p.far_open, double(p.error));
-    return double(members_.size()) * facets_per_far_ray * rays * (all > 0 ? own / all : 0);
+    return double(members_.size()) * facets_per_ray * rays * (all > 0 ? own / all : 0);
   }
   size_t longest_list() const {
     const double fewest =

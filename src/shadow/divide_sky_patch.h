@@ -11,6 +11,11 @@
 
 namespace troffer {
 
+// Cost of a ray, in facets of a mask (bench/costs; cost_of_mask_facet in transport/costs.h). Proofs
+// for a source may cost about as much as the cluster's rays to all sources would, in proportion to
+// the source's share of the light.
+constexpr double facets_per_ray = 12;
+
 // Sets memory.parts. Large facets (LargeFacets::large, at most some dozens) are tried first,
 // because walls hide much of a sky together with everything in front of them.
 void divide_sky_patch(const SourceTask& task, std::span<const uint32_t> members,

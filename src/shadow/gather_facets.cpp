@@ -115,7 +115,7 @@ constexpr size_t fewest_to_halve = 8;
 
 // Relative costs (docs/log/certified-visibility.md, "Residual rays"): facets of a mask per direct
 // ray; direct rays per mask, its certificates and its pilot samples; facets gathered per ray.
-constexpr double facets_per_ray = 6, rays_per_mask = 25, gathered_per_ray = 4;
+constexpr double facets_per_direct_ray = 6, rays_per_mask = 25, gathered_per_ray = 4;
 // Facets that a mask may always have.
 constexpr double fewest_facets = 384;
 
@@ -143,7 +143,8 @@ struct Division {
     const size_t longest = most_facets(is_last);
     if (is_last || !(task.promise.error > 0)) return longest;
     const FoundFacets::DirectRayPlan& dense = task.request.found->dense;
-    const double worth = dense.is_known() ? facets_per_ray * (dense.rays - rays_per_mask) : 0;
+    const double worth =
+        dense.is_known() ? facets_per_direct_ray * (dense.rays - rays_per_mask) : 0;
     const double shared = gathered_per_ray * double(members) * std::max(dense.rays, fewest_rays);
     return std::min(longest, size_t(std::min(std::max(worth, fewest_facets), shared)));
   }

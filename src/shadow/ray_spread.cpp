@@ -4,6 +4,7 @@
 
 #include "base/simd.h"
 #include "base/units.h"
+#include "shadow/vector_lanes.h"
 
 namespace troffer {
 
@@ -12,11 +13,10 @@ namespace {
 // Returns the sum of squared differences of a[i] and b[i].
 TROFFER_MULTIVERSION
 float squared_differences(size_t n, const float* __restrict a, const float* __restrict b) {
-  constexpr size_t lanes = 16;
-  float sums[lanes] = {};
-  const size_t whole = n / lanes * lanes;
-  for (size_t i = 0; i < whole; i += lanes)
-    for (size_t k = 0; k < lanes; ++k) {
+  float sums[vector_lanes] = {};
+  const size_t whole = n / vector_lanes * vector_lanes;
+  for (size_t i = 0; i < whole; i += vector_lanes)
+    for (size_t k = 0; k < vector_lanes; ++k) {
       const float d = a[i + k] - b[i + k];
       sums[k] += d * d;
     }

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "shadow/round_cover.h"
+
 namespace troffer {
 
 namespace {
@@ -27,13 +29,12 @@ struct Corners {
     };
     for (int i = 0; i < hull.count; ++i) add(hull.corners[size_t(i)]);
     receivers = count;
-    constexpr double rounding = 2e-6;
-    slack = hull.slack + rounding * magnitude;
+    slack = hull.slack + round_margin * magnitude;
     for (int i = 0; i < frame.corner_count(); ++i) {
       const MaskFrame::Corner& c = frame.corners()[i];
       add(frame.first_sample() + frame.step_k() * double(c.k) + frame.step_j() * double(c.j));
     }
-    cell_slack = rounding * magnitude;
+    cell_slack = round_margin * magnitude;
   }
   std::span<const Vec3d> of_receivers() const { return {at.data(), receivers}; }
   std::span<const Vec3d> of_cell() const { return {at.data() + receivers, count - receivers}; }

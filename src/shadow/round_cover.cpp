@@ -195,8 +195,6 @@ void cover_intersecting(const Vec3d& first, const Vec3d& step_k, const Vec3d& st
   }
 }
 
-constexpr double relative_tolerance = 2e-6;  // as for shafts
-
 class Covering {
  public:
   Covering(const MaskFrame& frame, const RoundList& round, const Vec3d& x, const Vec2& shift)
@@ -223,7 +221,7 @@ class Covering {
     MaskRows rows;
     cover_intersecting(grid_.first, grid_.step_k, grid_.step_j, grid_.rows, s,
                        length_squared(s) - round_.source.radius * round_.source.radius, w, outside,
-                       relative_tolerance * magnitude_, rows.row);
+                       round_margin * magnitude_, rows.row);
     return rows;
   }
 

@@ -13,6 +13,10 @@
 
 namespace troffer {
 
+// Rounding of distances to round bodies, relative to the largest coordinate: shaft_margin with a
+// safety factor of three.
+constexpr double round_margin = 2e-6;
+
 // Clears the open samples that round occluders hide from world position x.
 void cover(const MaskFrame& frame, const RoundList& round, const Vec3d& x, const Vec2& shift,
            CoverageMask& mask);

@@ -10,32 +10,33 @@
 #include "light/arctangent.h"
 #include "light/irradiance.h"
 #include "light/polygon.h"
+#include "shadow/coverage_mask.h"
+#include "shadow/vector_lanes.h"
 
 namespace troffer {
 
 namespace {
 
-constexpr size_t block = 16;
-
 // Sums over the edges of a polygon for a block of receivers with all corners above the horizon.
 template <class T>
 struct alignas(64) BlockSums {
-  T sum[block];     // Lambert's sum [1]
-  T least[block];   // height of the lowest corner
-  T angles[block];  // edge length × angle / |v × e|, summed: see is_exact
+  T sum[vector_lanes];     // Lambert's sum [1]
+  T least[vector_lanes];   // height of the lowest corner
+  T angles[vector_lanes];  // edge length × angle / |v × e|, summed: see is_exact
 };
 
 // Receivers relative to the polygon's first corner.
 template <class T>
 struct alignas(64) BlockReceivers {
-  T x[block], y[block], z[block], nx[block], ny[block], nz[block];
+  T x[vector_lanes], y[vector_lanes], z[vector_lanes], nx[vector_lanes], ny[vector_lanes],
+      nz[vector_lanes];
 };
 
 template <class T>
 TROFFER_ALWAYS_INLINE void add_lambert_edges(const T* __restrict corners, const T* __restrict sizes,
                                              int n, const BlockReceivers<T>& __restrict r,
                                              BlockSums<T>& __restrict out) {
-  for (size_t i = 0; i < block; ++i) {
+  for (size_t i = 0; i < vector_lanes; ++i) {
     out.sum[i] = out.angles[i] = 0;
     out.least[i] = std::numeric_limits<T>::max();
   }
@@ -44,7 +45,7 @@ TROFFER_ALWAYS_INLINE void add_lambert_edges(const T* __restrict corners, const 
     const T* b = corners + 3 * (e + 1 == n ? 0 : e + 1);
     const T ex = b[0] - a[0], ey = b[1] - a[1], ez = b[2] - a[2];
     const T ax = a[0], ay = a[1], az = a[2], size = sizes[e];
-    for (size_t i = 0; i < block; ++i) {
+    for (size_t i = 0; i < vector_lanes; ++i) {
       const T vx = ax - r.x[i], vy = ay - r.y[i], vz = az - r.z[i];
       // cross product with the edge, not with the other end: accurate if both are nearly parallel
       const T cx = vy * ez - vz * ey, cy = vz * ex - vx * ez, cz = vx * ey - vy * ex;
@@ -76,20 +77,18 @@ void lambert_float(const float* __restrict corners, const float* __restrict size
 // Subtracts in double precision, because the difference may cancel.
 TROFFER_MULTIVERSION
 void to_floats(const double* __restrict from, double origin, float* __restrict to) {
-  for (size_t i = 0; i < block; ++i) to[i] = float(from[i] - origin);
+  for (size_t i = 0; i < vector_lanes; ++i) to[i] = float(from[i] - origin);
 }
 TROFFER_MULTIVERSION
 void to_doubles(const double* __restrict from, double origin, double* __restrict to) {
-  for (size_t i = 0; i < block; ++i) to[i] = from[i] - origin;
+  for (size_t i = 0; i < vector_lanes; ++i) to[i] = from[i] - origin;
 }
-
-constexpr size_t most_corners = 16;
 
 // Returns the irradiance of the polygon clipped to the horizon with unit normal h. Coordinates are
 // relative to x, since crossings far from the origin would lose digits.
 double clipped_irradiance(std::span<const Vec3d> outline, const Vec3d& x, const Vec3d& n,
                           const Vec3d& h) {
-  std::array<Vec3d, 2 * most_corners> kept;
+  std::array<Vec3d, 2 * most_source_corners> kept;
   size_t count = 0;
   for (size_t i = 0; i < outline.size(); ++i) {
     const Vec3d p = outline[i] - x, q = outline[(i + 1) % outline.size()] - x;
@@ -110,7 +109,7 @@ double lowest_corner(std::span<const Vec3d> outline, const Vec3d& x, const Vec3d
 
 void ReceiverArrays::assign(size_t n) {
   size = n;
-  const size_t whole = (n + block - 1) / block * block;
+  const size_t whole = (n + vector_lanes - 1) / vector_lanes * vector_lanes;
   for (size_t a = 0; a < 3; ++a) {
     position[a].resize(whole);
     normal[a].resize(whole);
@@ -133,8 +132,8 @@ namespace {
 // The polygon and a block of receivers in one precision.
 template <class T>
 struct Lambert {
-  T corners[3 * most_corners];  // relative to the first one
-  T sizes[most_corners];        // lengths of edges
+  T corners[3 * most_source_corners];  // relative to the first one
+  T sizes[most_source_corners];        // lengths of edges
   BlockReceivers<T> receivers;
   BlockSums<T> sums;
 
@@ -176,7 +175,7 @@ class PolygonSums {
     // error of about 1e-6 / d.
     const double near2 = 100 * sqr(diameter_);
     if (!(length_squared(receivers.position_at(first) - outline_[0]) < near2 &&
-          length_squared(receivers.position_at(first + block - 1) - outline_[0]) < near2))
+          length_squared(receivers.position_at(first + vector_lanes - 1) - outline_[0]) < near2))
       return to_double();
     single_.set_receivers(to_floats, receivers, first, outline_[0]);
     lambert_float(single_.corners, single_.sizes, int(outline_.size()), single_.receivers,
@@ -227,12 +226,12 @@ class PolygonSums {
 
 void unoccluded_irradiance(std::span<const Vec3d> outline, const Vec3d& plane_normal,
                            const ReceiverArrays& receivers, float* out) {
-  outline = outline.first(std::min(outline.size(), most_corners));
+  outline = outline.first(std::min(outline.size(), most_source_corners));
   PolygonSums sums(outline);
   const double level = dot(plane_normal, outline[0]);
-  for (size_t first = 0; first < receivers.size; first += block) {
+  for (size_t first = 0; first < receivers.size; first += vector_lanes) {
     sums.begin_block(receivers, first);
-    const size_t count = std::min(block, receivers.size - first);
+    const size_t count = std::min(vector_lanes, receivers.size - first);
     for (size_t i = 0; i < count; ++i) {
       const Vec3d x = receivers.position_at(first + i);
       double value = 0;

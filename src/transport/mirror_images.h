@@ -32,7 +32,7 @@ class MirrorImages {
   static std::shared_ptr<const MirrorImages> of_relays(const PreparedScene& scene);
 
   const std::vector<Image>& all() const { return images_; }
-  // Returns the index of the image that a ray sees which is mirrored at v, or -1.
+  // Returns the index of the image that a ray mirrored at v sees, or -1.
   int32_t at(const Vertex& v) const;
 
   // Notes in Walk::last_place for integrators that sample images at matte surfaces. Such an

@@ -96,6 +96,23 @@ TEST_CASE("a camera without fov has a lens of 50 mm on 36 x 24 mm, whose diagona
       InputError);
 }
 
+TEST_CASE("the offset of the principal point is added to places on the film") {
+  const Camera c =
+      import_world(
+          "<sensor type='perspective'><float name='fov' value='90'/><float "
+          "name='principal_point_offset_x' value='.25'/><float "
+          "name='principal_point_offset_y' value='.125'/><film type='hdrfilm'><integer "
+          "name='width' value='80'/><integer name='height' value='40'/></film></sensor>")
+          .cameras.at(0);
+  // Mitsuba's perspective.cpp shows at place s of the film, from 0 to 1, what a centred film shows
+  // at s + offset. The optical axis is at 1/4 of the width and 3/8 of the height from the top.
+  REQUIRE(c.has_screen_window);
+  CHECK(c.screen_window[0] == doctest::Approx(-1));
+  CHECK(c.screen_window[1] == doctest::Approx(3));
+  CHECK(c.screen_window[2] == doctest::Approx(-1.25));
+  CHECK(c.screen_window[3] == doctest::Approx(0.75));
+}
+
 TEST_CASE("near and far limits of a camera; cameras of a batch") {
   const Scene s = import_world(
       "<sensor type='batch'><sensor type='perspective' id='a'><float name='near_clip' value='3'/>"

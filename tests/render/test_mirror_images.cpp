@@ -10,6 +10,7 @@
 #include "scene/mirror_image.h"
 #include "support/light_scenes.h"
 #include "support/surfaceless_lights.h"
+#include "transport/mirror_images.h"
 
 using namespace troffer;
 using namespace troffer::test;
@@ -149,6 +150,40 @@ TEST_CASE("a point light in a mirror, which no path finds, follows the inverse s
   for (const Indirect indirect : {Indirect::automatic, Indirect::cells}) {
     const Measurement m = at(scene, {0, 0, 2}, {0, 0, -1}, Method::certified, 0, indirect);
     CHECK(double(m.irradiance.g) == doctest::Approx(5 + 5.0 / 9).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("a uniform sky has no image in a mirror, and the mirror reflects it all the same") {
+  // From 1 m above the middle of a mirror of 2 m x 2 m, facing down, the mirror fills the share
+  // f = (4 / pi) a atan(a), a = 1 / sqrt(2), of what a whole hemisphere would send.
+  const double a = std::sqrt(0.5), f = 4 / pi * a * std::atan(a), sky = 1.5, share = 0.6;
+  const Vec3d image[4] = {
+      {-0.1, -0.1, -3}, {0.1, -0.1, -3}, {0.1, 0.1, -3}, {-0.1, 0.1, -3}};  // of the lamp
+  const double of_lamp = polygon_irradiance(image, {0, 0, 1}, {0, 0, -1}, Sides::both);
+  for (const double lamp : {0.0, 40.0}) {
+    Scene s;
+    const uint32_t black = add_diffuse(s, Rgb{0});
+    add_mirror_square(s, add_mirror(s, float(share)), 1);
+    add_environment(s, Rgb{float(sky)});
+    if (lamp > 0) add_lamp(s, black, {0, 0, 3}, 0.1f, Rgb{float(lamp)});
+    const PreparedScene scene(std::move(s));
+    const auto images = MirrorImages::make(scene);
+    CHECK((images != nullptr) == (lamp > 0));
+    if (images) {
+      REQUIRE(images->all().size() == 1);
+      CHECK(!images->all()[0].shows[0]);  // the sky
+      CHECK(images->all()[0].shows[1]);   // the lamp
+    }
+    // In the mirror, the lamp covers a part of the sky.
+    const double expected =
+        pi * sky * (1 - f) + share * pi * sky * f + (lamp > 0 ? share * (lamp - sky) * of_lamp : 0);
+    CAPTURE(lamp);
+    for (const Indirect indirect : {Indirect::automatic, Indirect::cells}) {
+      const Measurement m = at(scene, {0, 0, 1}, {0, 0, -1}, Method::certified, 0, indirect);
+      CHECK(std::abs(double(m.irradiance.g) - expected) <
+            4 * m.standard_error / luminous_efficacy + 1e-4 * expected);
+      CHECK(m.standard_error / luminous_efficacy < 0.02 * expected);
+    }
   }
 }
 

@@ -1,8 +1,11 @@
-// A panel that is cut into thousands of triangles gives the same light as the whole panel.
+// A panel that is cut into thousands of triangles gives the same light as the whole panel. A panel
+// that is not quite flat does not hide its own light.
 #include <doctest/doctest.h>
 
 #include <cmath>
 
+#include "import/emissive.h"
+#include "render/measure.h"
 #include "render/pictures.h"
 #include "support/light_scenes.h"
 #include "support/tessellations.h"
@@ -90,4 +93,32 @@ TEST_CASE("certified: a panel does not light its own back") {
   const Camera from_above = look_at({0.3f, 0.5f, 4}, {0.1f, -0.2f, 2.2f}, {0, 1, 0}, 15);
   const RenderResult result = render_now(PreparedScene(std::move(s)), from_above, options());
   CHECK(mean_green(result.layers[0].image) == 0);
+}
+
+TEST_CASE("a panel whose corner stands out by 1 µm to 1 mm keeps its light") {
+  // Irradiance 2 m below the middle of a square of 1 m: 4 L a atan(a), a = x / √(1 + x²), x = 1/4.
+  const double a = 0.25 / std::sqrt(1 + 0.25 * 0.25), exact = 4 * 100 * a * std::atan(a);
+  for (const uint32_t corner : {1u, 2u}) {
+    for (const float off : {1e-6f, 1e-5f, 1e-4f, 1e-3f, -1e-6f, -1e-5f, -1e-4f, -1e-3f}) {
+      Scene s;
+      Mesh m;
+      m.material = add_diffuse(s, Rgb{0.0f});
+      m.positions = {{-0.5f, -0.5f, 2}, {-0.5f, 0.5f, 2}, {0.5f, 0.5f, 2}, {0.5f, -0.5f, 2}};
+      m.triangles = {{0, 1, 2}, {0, 2, 3}};
+      m.positions[corner].z += off;
+      s.meshes.push_back(m);
+      add_mesh_lights(s, 0, {"panel", Rgb{100.0f}});
+      const PreparedScene prepared(std::move(s));
+      const std::vector<MeasuringPoint> points{{{0, 0, 0}, {0, 0, 1}}};
+      CAPTURE(corner);
+      CAPTURE(off);
+      for (const Method method : {Method::certified, Method::path, Method::fixed}) {
+        MeasureOptions o;
+        o.method = method;
+        o.indirect = Indirect::none;
+        const MeasureResult r = measure(prepared, points, o, {}, never_stopped);
+        CHECK(double(r.values[0].irradiance.g) == doctest::Approx(exact).epsilon(0.005));
+      }
+    }
+  }
 }

@@ -66,7 +66,8 @@ double set_frame(const MitsubaNode& node, const Vec3d& origin, Camera& camera,
   return length(x);
 }
 
-// Sets the part of the image plane that the crop shows, shifted by the principal point.
+// Sets the part of the image plane that the crop shows. Mitsuba adds the offset of the principal
+// point to the place of a pixel, so the optical axis meets the film at 0.5 - offset.
 void set_window(const MitsubaNode& node, const Film& film, Camera& camera) {
   const double dx = 2 * get_number(node, "principal_point_offset_x", 0);
   const double dy = 2 * get_number(node, "principal_point_offset_y", 0);
@@ -76,8 +77,8 @@ void set_window(const MitsubaNode& node, const Film& film, Camera& camera) {
   camera.aspect = float(film.crop_width) / float(film.crop_height);
   if (is_whole && dx == 0 && dy == 0) return;
   const double aspect = double(film.width) / double(film.height);
-  const auto x = [&](int pixel) { return aspect * (2.0 * pixel / film.width - 1 - dx); };
-  const auto y = [&](int pixel) { return 1 + dy - 2.0 * pixel / film.height; };
+  const auto x = [&](int pixel) { return aspect * (2.0 * pixel / film.width - 1 + dx); };
+  const auto y = [&](int pixel) { return 1 - dy - 2.0 * pixel / film.height; };
   camera.has_screen_window = true;
   camera.screen_window = {float(x(film.crop_x)), float(x(film.crop_x + film.crop_width)),
                           float(y(film.crop_y + film.crop_height)), float(y(film.crop_y))};
