@@ -13,6 +13,7 @@ import numpy as np
 import generate
 
 clamp = 4  # times the mean
+alike = 9  # pixels whose errors count as one in a mean: neighbours share gathers and fits
 worst_pixels = 4  # that get a reference of their own
 worst_samples = 16384  # of each half of it
 
@@ -127,7 +128,7 @@ class Reference:
         """Relative difference of the clamped means, and that in standard errors of both."""
         x, both = self.limited(picture.luminance), self.limited((self.a + self.b) / 2)
         noise = self.own_error() * self.mean / x.size ** 0.5
-        ours = picture.estimated * self.mean / x.size ** 0.5
+        ours = picture.estimated * self.mean / (x.size / alike) ** 0.5
         difference = x.mean() - both.mean()
         return difference / both.mean(), difference / max(np.hypot(noise, ours), 1e-30)
 
