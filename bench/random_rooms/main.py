@@ -114,10 +114,22 @@ class Reference:
     def own_error(self):
         return ((self.limited(self.a) - self.limited(self.b)) ** 2).mean() ** 0.5 / 2 / self.mean
 
+    def squares(self, x):
+        """Squared relative error of each pixel; its mean does not contain the reference's noise."""
+        return ((self.limited(x) - self.limited(self.a)) * (self.limited(x) - self.limited(self.b)) /
+                self.mean ** 2)
+
     def square(self, x):
-        """Mean squared relative error without the reference's noise, and its standard error."""
-        d = (self.limited(x) - self.limited(self.a)) * (self.limited(x) - self.limited(self.b))
-        return d.mean() / self.mean ** 2, d.std() / d.size ** 0.5 / self.mean ** 2
+        """Mean squared relative error, and its standard error by the reference's noise."""
+        d = self.squares(x)
+        variance = (self.limited(self.a) - self.limited(self.b)) ** 2 / 2 / self.mean ** 2
+        spread = (2 * np.maximum(d, 0) * variance + variance ** 2).sum() ** 0.5 / d.size
+        return d.mean(), spread
+
+    def spread(self, x):
+        """Standard error of the mean squared error, as another seed would show it."""
+        d = self.squares(x)
+        return d.std() / (d.size / alike) ** 0.5
 
     def error(self, x):
         """Relative error; if the reference's noise hides it, an upper bound of it."""
@@ -156,7 +168,8 @@ def time_at(error, paths):
 
 def doubts_of(asked, error, times, picture, reference, by_path, before):
     """Names of the invariants that a picture violates. by_path: the best picture by
-    `path`. before: (error², its σ) at a larger --error."""
+    `path`. before: picture at a larger
+    --error, or None."""
     found = []
     off, z = reference.off(picture)
     square, spread = reference.square(picture.luminance)
@@ -171,8 +184,11 @@ def doubts_of(asked, error, times, picture, reference, by_path, before):
         found.append("mean")
     if is_measured and error > 2 * asked:
         found.append("missed")
-    if before and square > 1.21 * before[0] and square - before[0] > 3 * np.hypot(spread, before[1]):
-        found.append("rising")
+    if before:
+        larger = reference.square(before.luminance)[0]
+        noise = np.hypot(reference.spread(picture.luminance), reference.spread(before.luminance))
+        if square > 1.21 * larger and square - larger > 3 * noise:
+            found.append("rising")
     if reference.worst(picture.luminance, by_path)[4]:
         found.append("outlier")
     return found
@@ -200,7 +216,7 @@ def measure(room, a):
         times = time_at(error, by_path) / picture.seconds
         found = doubts_of(float(asked), error, times, picture, reference, paths[-1].luminance,
                           before)
-        before = reference.square(picture.luminance)
+        before = picture
         off, z = reference.off(picture)
         x, y, value, right, _ = reference.worst(picture.luminance, paths[-1].luminance)
         mark = "?" if reference.own_error() > error / 3 else ""
@@ -214,16 +230,16 @@ def measure(room, a):
 
 def summary(rows, errors):
     print("\n| asked | rooms | times as fast: geometric mean, median, least | est. in 1 to 1.6, under "
-          "0.6 | " + " | ".join(doubts) + " |\n" + "|---" * (4 + len(doubts)) + "|")
+          "0.6, of rooms without ? | " + " | ".join(doubts) + " |\n" + "|---" * (4 + len(doubts)) + "|")
     for e in errors:
         of = [r for r in rows if r[0] == e]
         if not of:
             continue
         times = np.array([r[1] for r in of])
-        estimates = np.array([r[2] for r in of if np.isfinite(r[2])])
+        estimates = np.array([r[2] for r in of if np.isfinite(r[2]) and not r[4]])
+        within = np.sum((estimates >= 1) & (estimates <= 1.6))
         print(f"| {e} | {len(of)} | {np.exp(np.log(times).mean()):.2f}, {np.median(times):.2f}, "
-              f"{times.min():.2f} | {np.mean((estimates >= 1) & (estimates <= 1.6)):.0%}, "
-              f"{np.mean(estimates < 0.6):.0%} | " +
+              f"{times.min():.2f} | {within}, {np.sum(estimates < 0.6)} of {len(estimates)} | " +
               " | ".join(str(sum(d in r[3] for r in of)) for d in doubts) + " |")
     print("\nA ? marks an error below three times the reference's own. Doubts:")
     for name, text in doubts.items():
