@@ -66,10 +66,22 @@ float median_distance(const CellsSeen& seen) {
 
 }  // namespace
 
+void CellPlaces::add(uint32_t cell, const CellHit& hit) {
+  if (cell >= cells_.size()) cells_.resize(cell + 1);
+  Places& p = cells_[cell];
+  const uint64_t seen = p.seen++;
+  // Reservoir sampling: each hit stays with the same probability.
+  const uint64_t at =
+      seen < hits_per_cell
+          ? seen
+          : hash_of(seed_, uint64_t(cell), seen, stream::annual_cell_places) % (seen + 1);
+  if (at < hits_per_cell) p.hits[at] = hit;
+}
+
 TransportCells::TransportCells(const PreparedScene& scene, std::span<const CellHit> sensors,
                                const TransportRays& rays, uint64_t seed, int threads,
                                const StopFlag& stop)
-    : scene_(scene), walks_(scene, nullptr) {
+    : scene_(scene), walks_(scene, nullptr), places_(seed) {
   std::vector<CellTask> tasks;
   for (size_t i = 0; i < sensors.size(); ++i) {
     CellTask& t = tasks.emplace_back();
@@ -83,7 +95,11 @@ TransportCells::TransportCells(const PreparedScene& scene, std::span<const CellH
   trace_cell_rays(walks_, nullptr, tasks, threads, nullptr, stop, seen, counters);
   cells_ = std::make_unique<CellMap>(scene.tracer,
                                      std::max(size_of_median * median_distance(seen), least_cell));
-  const auto cell_of = [&](const CellSeen& s) { return cells_->add(s.hit, s.distance); };
+  const auto cell_of = [&](const CellSeen& s) {
+    const uint32_t cell = cells_->add(s.hit, s.distance);
+    places_.add(cell, s.hit);
+    return cell;
+  };
   add_rows(seen, tasks, false, cell_of, sensors_, sensors_outside_);
   near_ = cells_->size();
 
@@ -93,10 +109,10 @@ TransportCells::TransportCells(const PreparedScene& scene, std::span<const CellH
     while (rows_.size() < end && !stop.load()) {
       const size_t first = rows_.size(), last = std::min(end, first + tasks_at_a_time);
       tasks.clear();
-      // The map moves hits as it grows, so tasks have copies.
+      // Places change as further rays hit, so tasks have copies.
       std::vector<std::vector<CellHit>> from;
       for (size_t c = first; c < last; ++c) {
-        const std::span<const CellHit> hits = cells_->hits(c);
+        const std::span<const CellHit> hits = places_.of(c);
         from.emplace_back(hits.begin(), hits.end());
       }
       for (size_t c = first; c < last; ++c) {
