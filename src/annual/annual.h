@@ -61,7 +61,8 @@ struct AnnualResult {
   // Root mean square over sensors and hours of the standard error, relative to that of the
   // illuminance.
   double relative_error = 0;
-  // The same over sensors, states and Tregenza's patches, for coefficients of reflected light.
+  // The same over sensors, states and patches (YearSkies::coarse), for coefficients of reflected
+  // light.
   double relative_error_reflected = 0;
   size_t cells = 0, links = 0, sources = 0;  // of one replicate, at most
   bool is_complete = true;                   // false after a stop

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/frame.h"
+#include "base/streams.h"
 #include "base/units.h"
 #include "base/warp.h"
 #include "daylight/sky_model.h"
@@ -52,6 +53,15 @@ float OutsideSources::radiance(size_t source, const Vec3& direction) const {
   const double cosine = dot(w, Vec3d(suns_[source - first_sun()]));
   if (cosine < std::cos(blurred_radius)) return 0;
   return float(1 / (pi * sqr(std::sin(blurred_radius))));
+}
+
+DrawnSources::DrawnSources(const OutsideSources& sources, size_t first, size_t count, int samples,
+                           uint64_t seed) {
+  Random random(hash_of(seed, uint64_t(first), uint64_t(samples), stream::annual_cell_light));
+  for (size_t i = 0; i < count; ++i) {
+    for (size_t k = 0; k < drawings; ++k) sources.draw(first + i, samples, random, samples_);
+    begin_.push_back(samples_.size());
+  }
 }
 
 Vec3 within_sun(const Vec3& to_sun, const Vec2& number) {

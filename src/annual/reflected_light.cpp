@@ -56,11 +56,15 @@ class BlockSolver {
         channels_(cells.is_grey() ? 1 : 3),
         cell_floats_(channels_ * block),
         direct_(cells.cell_count() * cell_floats_, 0.0f),
+        near_samples_(sources, first_, count_, samples_near, seed),
+        far_samples_(sources, first_, count_, samples_far, seed),
         rays_(tracer) {}
 
   void solve() {
     light_up();
     total_ = direct_;
+    // Few sources shine through one window; the rest needs no balance.
+    if (std::none_of(direct_.begin(), direct_.end(), [](float d) { return d > 0; })) return;
     const size_t n = cells_.cell_count();
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {
       double change = 0, sum = 0;
@@ -126,12 +130,10 @@ class BlockSolver {
       add_outside(cells_.rows_outside().of(c), &direct_[c * cell_floats_]);
       if (hits.empty()) continue;
       Random random(hash_of(seed_, uint64_t(c), uint64_t(first_), stream::annual_cell_light));
-      for (size_t i = 0; i < count_; ++i) {
-        samples_.clear();
-        sources_.draw(first_ + i, c < cells_.near_count() ? samples_near : samples_far, random,
-                      samples_);
-        for (const OutsideSample& s : samples_) send(hits, uint32_t(c), uint32_t(i), s, random);
-      }
+      const DrawnSources& drawn = c < cells_.near_count() ? near_samples_ : far_samples_;
+      for (size_t i = 0; i < count_; ++i)
+        for (const OutsideSample& s : drawn.of(i, random))
+          send(hits, uint32_t(c), uint32_t(i), s, random);
       if (rays_.size() >= rays_at_a_time) receive();
     }
     receive();
@@ -160,9 +162,9 @@ class BlockSolver {
   uint64_t seed_;
   size_t channels_, cell_floats_;
   std::vector<float> direct_, total_;  // cell by cell, channel by channel
+  DrawnSources near_samples_, far_samples_;
   OpenRays rays_;
   std::vector<Sent> sent_;
-  std::vector<OutsideSample> samples_;
 };
 
 }  // namespace

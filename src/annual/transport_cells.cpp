@@ -1,6 +1,7 @@
 #include "annual/transport_cells.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/random.h"
 #include "base/streams.h"
@@ -93,8 +94,11 @@ TransportCells::TransportCells(const PreparedScene& scene, std::span<const CellH
   seen.keeps_escapes = true;
   Counters counters;
   trace_cell_rays(walks_, nullptr, tasks, threads, nullptr, stop, seen, counters);
-  cells_ = std::make_unique<CellMap>(scene.tracer,
-                                     std::max(size_of_median * median_distance(seen), least_cell));
+  // Sizes differ between replicates by up to √2, so that the spread of replicates includes the
+  // error by uniform light within cells.
+  const double octave = Random(hash_of(seed, stream::annual_cell_places)).next_double() - 0.5;
+  const float size = size_of_median * median_distance(seen) * float(std::exp2(octave));
+  cells_ = std::make_unique<CellMap>(scene.tracer, std::max(size, least_cell));
   const auto cell_of = [&](const CellSeen& s) {
     const uint32_t cell = cells_->add(s.hit, s.distance);
     places_.add(cell, s.hit);
