@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "base/frame.h"
-#include "base/streams.h"
 #include "base/units.h"
 #include "base/warp.h"
 #include "daylight/sky_model.h"
@@ -57,7 +56,7 @@ float OutsideSources::radiance(size_t source, const Vec3& direction) const {
 
 DrawnSources::DrawnSources(const OutsideSources& sources, size_t first, size_t count, int samples,
                            uint64_t seed) {
-  Random random(hash_of(seed, uint64_t(first), uint64_t(samples), stream::annual_cell_light));
+  Random random(seed);
   for (size_t i = 0; i < count; ++i) {
     for (size_t k = 0; k < drawings; ++k) sources.draw(first + i, samples, random, samples_);
     begin_.push_back(samples_.size());

@@ -56,8 +56,7 @@ class BlockSolver {
         channels_(cells.is_grey() ? 1 : 3),
         cell_floats_(channels_ * block),
         direct_(cells.cell_count() * cell_floats_, 0.0f),
-        near_samples_(sources, first_, count_, samples_near, seed),
-        far_samples_(sources, first_, count_, samples_far, seed),
+        drawn_{draw(samples_near), draw(samples_far)},
         rays_(tracer) {}
 
   void solve() {
@@ -88,6 +87,12 @@ class BlockSolver {
     uint32_t cell, source;
     float weight;
   };
+
+  DrawnSources draw(int samples) const {
+    const uint64_t seed =
+        hash_of(seed_, uint64_t(first_), uint64_t(samples), stream::annual_cell_light);
+    return {sources_, first_, count_, samples, seed};
+  }
 
   using CellLight = std::array<float, 3 * block>;  // of one cell
 
@@ -130,7 +135,7 @@ class BlockSolver {
       add_outside(cells_.rows_outside().of(c), &direct_[c * cell_floats_]);
       if (hits.empty()) continue;
       Random random(hash_of(seed_, uint64_t(c), uint64_t(first_), stream::annual_cell_light));
-      const DrawnSources& drawn = c < cells_.near_count() ? near_samples_ : far_samples_;
+      const DrawnSources& drawn = c < cells_.near_count() ? drawn_[0] : drawn_[1];
       for (size_t i = 0; i < count_; ++i)
         for (const OutsideSample& s : drawn.of(i, random))
           send(hits, uint32_t(c), uint32_t(i), s, random);
@@ -162,7 +167,7 @@ class BlockSolver {
   uint64_t seed_;
   size_t channels_, cell_floats_;
   std::vector<float> direct_, total_;  // cell by cell, channel by channel
-  DrawnSources near_samples_, far_samples_;
+  std::array<DrawnSources, 2> drawn_;  // for near and for far cells
   OpenRays rays_;
   std::vector<Sent> sent_;
 };
