@@ -61,7 +61,7 @@ struct AnnualResult {
   // Root mean square over sensors and hours of the standard error, relative to that of the
   // illuminance.
   double relative_error = 0;
-  // Root mean square over sensors, states and Tregenza's patches, for coefficients of reflected
+  // The same over sensors, states and patches (YearSkies::coarse), for coefficients of reflected
   // light.
   double relative_error_reflected = 0;
   size_t cells = 0, links = 0, sources = 0;  // of the replicate that has most of them

@@ -139,7 +139,7 @@ std::string settings_section(const AnnualReport& r) {
   add("Occupancy", r.occupancy);
   add("Threshold of daylight autonomy", fmt::format("{:g} lx", r.da_lx));
   add("North", fmt::format("{:g}° clockwise", r.north_deg));
-  add("Sky", fmt::format("Perez all-weather, {} patches direct, 145 reflected",
+  add("Sky", fmt::format("Perez all-weather, {} patches direct, 577 reflected",
                          result.skies.fine.sky.size()));
   add("Cells and light paths",
       fmt::format("{} cells, {} links, {} sources, {} replicates", result.cells, result.links,

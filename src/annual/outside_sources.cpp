@@ -54,6 +54,15 @@ float OutsideSources::radiance(size_t source, const Vec3& direction) const {
   return float(1 / (pi * sqr(std::sin(blurred_radius))));
 }
 
+DrawnSources::DrawnSources(const OutsideSources& sources, size_t first, size_t count, int samples,
+                           uint64_t seed) {
+  Random random(seed);
+  for (size_t i = 0; i < count; ++i) {
+    for (size_t k = 0; k < drawings; ++k) sources.draw(first + i, samples, random, samples_);
+    begin_.push_back(samples_.size());
+  }
+}
+
 Vec3 within_sun(const Vec3& to_sun, const Vec2& number) {
   const float radius = float(std::sin(rad_from_deg(sun_angular_radius_deg)));
   const Vec2 disc = disk_from_square(number) * radius;

@@ -12,6 +12,10 @@
 
 namespace troffer {
 
+// Subdivision of the sky for reflected light. Tregenza's patches (1) are too wide: deep in rooms, a
+// few of them behind the window make all the light (docs/log/annual.md).
+constexpr int reflected_subdivision = 2;
+
 // A direction drawn from a source, and the illuminance of a plane facing it per unit of the source.
 struct OutsideSample {
   Vec3 direction;
@@ -41,8 +45,27 @@ class OutsideSources {
   }
 
   Compass compass_;
-  ReinhartSky sky_{1};
+  ReinhartSky sky_{reflected_subdivision};
   std::vector<Vec3> suns_;
+};
+
+// Samples of some sources, drawn beforehand. Places choose among the drawings of a source, so that
+// drawings are shared but no sample costs more than a look-up.
+class DrawnSources {
+ public:
+  // Draws sources first … first + count - 1 with `samples` per drawing.
+  DrawnSources(const OutsideSources& sources, size_t first, size_t count, int samples,
+               uint64_t seed);
+  // One drawing of source first + i.
+  std::span<const OutsideSample> of(size_t i, Random& random) const {
+    const size_t n = (begin_[i + 1] - begin_[i]) / drawings;
+    return std::span(samples_).subspan(begin_[i] + (random.next_u32() % drawings) * n, n);
+  }
+
+ private:
+  static constexpr size_t drawings = 64;  // of a source
+  std::vector<size_t> begin_{0};
+  std::vector<OutsideSample> samples_;
 };
 
 // Returns a direction within the sun's disc around a unit direction.

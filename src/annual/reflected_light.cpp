@@ -56,11 +56,14 @@ class BlockSolver {
         channels_(cells.is_grey() ? 1 : 3),
         cell_floats_(channels_ * block),
         direct_(cells.cell_count() * cell_floats_, 0.0f),
+        drawn_{draw(samples_near), draw(samples_far)},
         rays_(tracer) {}
 
   void solve() {
     light_up();
     total_ = direct_;
+    // Few sources shine through one window; the rest needs no balance.
+    if (std::none_of(direct_.begin(), direct_.end(), [](float d) { return d > 0; })) return;
     const size_t n = cells_.cell_count();
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {
       double change = 0, sum = 0;
@@ -84,6 +87,12 @@ class BlockSolver {
     uint32_t cell, source;
     float weight;
   };
+
+  DrawnSources draw(int samples) const {
+    const uint64_t seed =
+        hash_of(seed_, uint64_t(first_), uint64_t(samples), stream::annual_cell_light);
+    return {sources_, first_, count_, samples, seed};
+  }
 
   using CellLight = std::array<float, 3 * block>;  // of one cell
 
@@ -126,12 +135,10 @@ class BlockSolver {
       add_outside(cells_.rows_outside().of(c), &direct_[c * cell_floats_]);
       if (hits.empty()) continue;
       Random random(hash_of(seed_, uint64_t(c), uint64_t(first_), stream::annual_cell_light));
-      for (size_t i = 0; i < count_; ++i) {
-        samples_.clear();
-        sources_.draw(first_ + i, c < cells_.near_count() ? samples_near : samples_far, random,
-                      samples_);
-        for (const OutsideSample& s : samples_) send(hits, uint32_t(c), uint32_t(i), s, random);
-      }
+      const DrawnSources& drawn = c < cells_.near_count() ? drawn_[0] : drawn_[1];
+      for (size_t i = 0; i < count_; ++i)
+        for (const OutsideSample& s : drawn.of(i, random))
+          send(hits, uint32_t(c), uint32_t(i), s, random);
       if (rays_.size() >= rays_at_a_time) receive();
     }
     receive();
@@ -160,9 +167,9 @@ class BlockSolver {
   uint64_t seed_;
   size_t channels_, cell_floats_;
   std::vector<float> direct_, total_;  // cell by cell, channel by channel
+  std::array<DrawnSources, 2> drawn_;  // for near and for far cells
   OpenRays rays_;
   std::vector<Sent> sent_;
-  std::vector<OutsideSample> samples_;
 };
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace troffer {
 namespace {
 
 constexpr size_t replicates = replicate_count;
+constexpr size_t hours_at_a_time = 512;
 constexpr int cosine_points = 4;  // per side of a patch, for the mean cosine on a tilted sensor
 
 // out += w v
@@ -36,7 +37,8 @@ class SensorCalculation {
     add_sky();
     add_ground();
     add_sun();
-    for (size_t r = 0; r < replicates; ++r) add_reflected(r);
+    add_reflected_sky();
+    for (size_t r = 0; r < replicates; ++r) add_reflected_sun(r);
     return std::move(out_);
   }
   std::vector<SunHour> compute_sun() {
@@ -153,14 +155,26 @@ class SensorCalculation {
       }
     }
   }
-  void add_reflected(size_t r) {
-    const ReflectedReplicate& replicate = light_.reflected[r];
-    const std::span<const float> c = replicate.of(sensor_);
+  // In runs of hours, so that luminances and sums stay in the cache.
+  void add_reflected_sky() {
     const PatchHours& coarse = light_.skies.coarse;
     const size_t patches = coarse.sky.size();
-    for (size_t p = 0; p < patches; ++p)
-      add_scaled(c[p], coarse.of(p, out_.hours).data(), total(r), out_.hours);
-    add_scaled(c[patches], light_.skies.ground.data(), total(r), out_.hours);
+    for (size_t first = 0; first < out_.hours; first += hours_at_a_time) {
+      const size_t n = std::min(hours_at_a_time, out_.hours - first);
+      for (size_t p = 0; p <= patches; ++p) {
+        const float* sky =
+            p < patches ? coarse.of(p, out_.hours).data() : light_.skies.ground.data();
+        for (size_t r = 0; r < replicates; ++r) {
+          const float c = light_.reflected[r].of(sensor_)[p];
+          if (c > 0) add_scaled(c, sky + first, total(r) + first, n);
+        }
+      }
+    }
+  }
+  void add_reflected_sun(size_t r) {
+    const ReflectedReplicate& replicate = light_.reflected[r];
+    const std::span<const float> c = replicate.of(sensor_);
+    const size_t patches = light_.skies.coarse.sky.size();
     for (size_t h = 0; h < out_.hours; ++h) {
       const float lx = light_.skies.sun_lx[h];
       if (lx == 0) continue;

@@ -84,10 +84,10 @@ HoursOfSensor StateSums::Sensor::means(ErrorSums& sums) {
       const double d = double(operated_[r * hours + h]) - mean;
       squares += d * d;
     }
-    const double variance = squares / double((set_count - 1) * set_count);
-    out.error[h] = float(std::sqrt(variance));
+    const double error = error_of_mean(squares, set_count);
+    out.error[h] = float(error);
     sums.squares += mean * mean;
-    sums.errors += variance;
+    sums.errors += error * error;
   }
   return out;
 }

@@ -1,6 +1,7 @@
 #include "annual/transport_cells.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/random.h"
 #include "base/streams.h"
@@ -66,10 +67,22 @@ float median_distance(const CellsSeen& seen) {
 
 }  // namespace
 
+void CellPlaces::add(uint32_t cell, const CellHit& hit) {
+  if (cell >= cells_.size()) cells_.resize(cell + 1);
+  Places& p = cells_[cell];
+  const uint64_t seen = p.seen++;
+  // Reservoir sampling: each hit stays with the same probability.
+  const uint64_t at =
+      seen < hits_per_cell
+          ? seen
+          : hash_of(seed_, uint64_t(cell), seen, stream::annual_cell_places) % (seen + 1);
+  if (at < hits_per_cell) p.hits[at] = hit;
+}
+
 TransportCells::TransportCells(const PreparedScene& scene, std::span<const CellHit> sensors,
                                const TransportRays& rays, uint64_t seed, int threads,
                                const StopFlag& stop)
-    : scene_(scene), walks_(scene, nullptr) {
+    : scene_(scene), walks_(scene, nullptr), places_(seed) {
   std::vector<CellTask> tasks;
   for (size_t i = 0; i < sensors.size(); ++i) {
     CellTask& t = tasks.emplace_back();
@@ -81,9 +94,16 @@ TransportCells::TransportCells(const PreparedScene& scene, std::span<const CellH
   seen.keeps_escapes = true;
   Counters counters;
   trace_cell_rays(walks_, nullptr, tasks, threads, nullptr, stop, seen, counters);
-  cells_ = std::make_unique<CellMap>(scene.tracer,
-                                     std::max(size_of_median * median_distance(seen), least_cell));
-  const auto cell_of = [&](const CellSeen& s) { return cells_->add(s.hit, s.distance); };
+  // Sizes differ between replicates by up to √2, so that the spread of replicates includes the
+  // error by uniform light within cells.
+  const double octave = Random(hash_of(seed, stream::annual_cell_places)).next_double() - 0.5;
+  const float size = size_of_median * median_distance(seen) * float(std::exp2(octave));
+  cells_ = std::make_unique<CellMap>(scene.tracer, std::max(size, least_cell));
+  const auto cell_of = [&](const CellSeen& s) {
+    const uint32_t cell = cells_->add(s.hit, s.distance);
+    places_.add(cell, s.hit);
+    return cell;
+  };
   add_rows(seen, tasks, false, cell_of, sensors_, sensors_outside_);
   near_ = cells_->size();
 
@@ -93,10 +113,10 @@ TransportCells::TransportCells(const PreparedScene& scene, std::span<const CellH
     while (rows_.size() < end && !stop.load()) {
       const size_t first = rows_.size(), last = std::min(end, first + tasks_at_a_time);
       tasks.clear();
-      // The map moves hits as it grows, so tasks have copies.
+      // Places change as further rays hit, so tasks have copies.
       std::vector<std::vector<CellHit>> from;
       for (size_t c = first; c < last; ++c) {
-        const std::span<const CellHit> hits = cells_->hits(c);
+        const std::span<const CellHit> hits = places_.of(c);
         from.emplace_back(hits.begin(), hits.end());
       }
       for (size_t c = first; c < last; ++c) {

@@ -5,6 +5,8 @@
 // whole calculation. Lengths are in metres.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -48,6 +50,29 @@ class LinkRows {
   std::vector<Link> links_;
 };
 
+// Places on cells where their rays and direct light start: for each cell, a random choice among all
+// rays that hit it. Cells' own hits (cells/cell_map.h) are the first ones, which would be those of
+// the first sensors and so lie on one part of the cell.
+class CellPlaces {
+ public:
+  explicit CellPlaces(uint64_t seed) : seed_(seed) {}
+  // Adds a ray's hit of a cell.
+  void add(uint32_t cell, const CellHit& hit);
+  size_t size() const { return cells_.size(); }
+  std::span<const CellHit> of(size_t cell) const {
+    const Places& p = cells_[cell];
+    return std::span(p.hits).first(std::min(size_t(p.seen), p.hits.size()));
+  }
+
+ private:
+  struct Places {
+    std::array<CellHit, hits_per_cell> hits;
+    uint32_t seen = 0;  // rays that hit the cell
+  };
+  uint64_t seed_;
+  std::vector<Places> cells_;
+};
+
 struct TransportRays {
   int of_sensor = 64;                       // gather rays of a sensor
   int of_near_cell = 48, of_far_cell = 16;  // rays of cells that sensors see, and of others
@@ -62,7 +87,7 @@ class TransportCells {
   size_t cell_count() const { return cells_->size(); }
   // Cells below this number are seen by sensors.
   size_t near_count() const { return near_; }
-  std::span<const CellHit> hits(size_t cell) const { return cells_->hits(cell); }
+  std::span<const CellHit> hits(size_t cell) const { return places_.of(cell); }
   const LinkRows<CellLink>& sensors() const { return sensors_; }
   const LinkRows<CellLink>& rows() const { return rows_; }
   const LinkRows<OutsideLink>& sensors_outside() const { return sensors_outside_; }
@@ -76,6 +101,7 @@ class TransportCells {
   const PreparedScene& scene_;
   GatherWalks walks_;
   std::unique_ptr<CellMap> cells_;
+  CellPlaces places_;
   size_t near_ = 0;
   bool is_grey_ = true;
   LinkRows<CellLink> sensors_, rows_;

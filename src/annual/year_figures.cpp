@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "render/sample_sets.h"
+
 namespace troffer {
 
 namespace {
@@ -140,12 +142,18 @@ SensorFigures figures_of(const HoursOfFigures& hours, const YearTimes& times, in
   return f;
 }
 
+double error_of_mean(double squares, size_t n) {
+  if (n < 2) return 0;
+  constexpr double normal_quantile = 1.96;
+  return std::sqrt(squares / double((n - 1) * n)) * t_quantile_95(int(n) - 1) / normal_quantile;
+}
+
 YearFigure with_spread(double of_all, std::span<const double> of_replicates) {
   double mean = 0, squares = 0;
   const auto n = double(of_replicates.size());
   for (const double v : of_replicates) mean += v / n;
   for (const double v : of_replicates) squares += (v - mean) * (v - mean);
-  return {of_all, n > 1 ? std::sqrt(squares / (n - 1) / n) : 0};
+  return {of_all, error_of_mean(squares, of_replicates.size())};
 }
 
 YearFigure FigureTable::of(size_t sensor, SensorFigure figure) const {

@@ -58,12 +58,16 @@ struct HoursOfFigures {
 SensorFigures figures_of(const HoursOfFigures& hours, const YearTimes& times, int steps_per_hour,
                          const FigureSettings& settings);
 
+// Returns the standard error of the mean of n values, which may be few: 95 % of the intervals
+// mean ± 1.96 errors hold the true value, as for Measurement. squares: sum of squared deviations
+// from the mean. 0 with fewer than two values.
+double error_of_mean(double squares, size_t n);
+
 // A value with its standard error.
 struct YearFigure {
   double value = 0, error = 0;
 };
-// Returns the value of all replicates together, with the error by their spread: the standard
-// deviation of the replicates over the root of their number.
+// Returns the value of all replicates together, with the error by their spread (error_of_mean()).
 YearFigure with_spread(double of_all, std::span<const double> of_replicates);
 
 // Figures of all sensors, from all replicates together (set 0) and from each alone.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "annual/outside_sources.h"
 #include "annual/sun_grid.h"
 #include "base/parallel.h"
 #include "base/units.h"
@@ -20,7 +21,8 @@ int points_of(int subdivision) {
 
 YearSkies make_year_skies(const WeatherYear& year, int subdivision, double ground_reflectance,
                           int threads) {
-  YearSkies out{{}, {ReinhartSky(1), {}}, {ReinhartSky(subdivision), {}}, {}, {}, {}};
+  YearSkies out{
+      {}, {ReinhartSky(reflected_subdivision), {}}, {ReinhartSky(subdivision), {}}, {}, {}, {}};
   for (size_t i = 0; i < year.steps.size(); ++i)
     if (year.steps[i].sun.altitude_deg > 0) out.steps.push_back(uint32_t(i));
   const size_t n = out.hours();
@@ -33,13 +35,13 @@ YearSkies make_year_skies(const WeatherYear& year, int subdivision, double groun
     const PerezSky sky =
         perez_sky(step.direct_normal, step.diffuse_horizontal, zenith, step.sun.distance_au);
     const Vec3d to_sun = direction_of(step.sun);
-    std::vector<float> luminances(out.fine.sky.size());
+    std::vector<float> luminances(std::max(out.fine.sky.size(), out.coarse.sky.size()));
     const auto fill = [&](PatchHours& hours, int points) {
       patch_luminances(hours.sky, sky.shape, to_sun, sky.diffuse_lx, points,
                        std::span(luminances).first(hours.sky.size()));
       for (size_t p = 0; p < hours.sky.size(); ++p) hours.luminance[p * n + h] = luminances[p];
     };
-    fill(out.coarse, points_of(1));
+    fill(out.coarse, points_of(reflected_subdivision));
     fill(out.fine, points_of(subdivision));
     if (has_sunshine(step)) out.sun_lx[h] = float(sky.direct_lx);
     out.diffuse_lx[h] = float(sky.diffuse_lx);

@@ -22,7 +22,7 @@ struct PatchHours {
 
 struct YearSkies {
   std::vector<uint32_t> steps;    // indices into WeatherYear::steps
-  PatchHours coarse;              // Tregenza's patches, for reflected light
+  PatchHours coarse;              // for reflected light (outside_sources.h)
   PatchHours fine;                // for light straight from the sky
   std::vector<float> ground;      // luminance below the horizon, cd/m²
   std::vector<float> sun_lx;      // illuminance of a plane that faces the sun

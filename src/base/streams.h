@@ -47,6 +47,7 @@ inline constexpr uint64_t annual_replicates = 0x616e'6e75;
 inline constexpr uint64_t annual_gather = 0x616e'6e67;
 inline constexpr uint64_t annual_rows = 0x616e'6e72;
 inline constexpr uint64_t annual_cell_light = 0x616e'6e63;
+inline constexpr uint64_t annual_cell_places = 0x616e'6e70;
 inline constexpr uint64_t annual_sun_grid = 0x616e'6e6e;
 inline constexpr uint64_t annual_direct_sky = 0x616e'6e64;
 inline constexpr uint64_t annual_direct_ground = 0x616e'6e74;

@@ -60,11 +60,12 @@ TEST_CASE("quarters of an hour count as such") {
   CHECK(at(f, SensorFigure::da) == doctest::Approx(40));
 }
 
-TEST_CASE("the error is that of the mean of replicates") {
+// Student's t for 95 %, over 1.96: 3.182 with three degrees of freedom, 12.706 with one.
+TEST_CASE("the error is that of the mean of replicates, for intervals of 95 %") {
   const std::array values{1.0, 2.0, 3.0, 4.0};  // standard deviation √(5/3)
   const YearFigure f = with_spread(2.4, values);
   CHECK(f.value == 2.4);
-  CHECK(f.error == doctest::Approx(std::sqrt(5.0 / 3) / 2));
+  CHECK(f.error == doctest::Approx(std::sqrt(5.0 / 3) / 2 * 3.182 / 1.96).epsilon(0.004));
 }
 
 // LM-83 and EN 17037 assess sunlight and provision without movable shading.
@@ -121,6 +122,7 @@ TEST_CASE("a requirement within the error of its limit is undecided") {
       table.at(s, set)[size_t(SensorFigure::da)] = s == 0 || set == 2 ? 60 : 40;
   const GridResult r = grid_result(table, 0, 2, false);
   CHECK(r.requirements[0].figure.value == 50);
-  CHECK(r.requirements[0].figure.error == doctest::Approx(25));  // of 50 and 100 %
-  CHECK(r.requirements[0].verdict == YearVerdict::undecided);    // at least 40 %
+  CHECK(r.requirements[0].figure.error ==
+        doctest::Approx(25 * 12.706 / 1.96).epsilon(0.004));   // of 50 and 100 %
+  CHECK(r.requirements[0].verdict == YearVerdict::undecided);  // at least 40 %
 }
