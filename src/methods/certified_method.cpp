@@ -164,7 +164,12 @@ std::unique_ptr<Integrator> make_by_cells(const MethodPlan& plan, const MethodIn
   add_images(in, {{first, plan.first}, {at_cells, plan.at_cells}, {further, plan.further}});
   const std::shared_ptr<const Cells> cells =
       cells_of(plan, in, *at_cells, in.cells->view != nullptr ? 0.4 : 1);
-  if (!cells) return plan.forecast && !in.cells->stop.load() ? make_paths(plan, in) : nullptr;
+  if (!cells) {
+    if (!plan.forecast || in.cells->stop.load()) return nullptr;
+    in.cells->decisions.push_back(
+        {"all light", "path tracing instead", "there were more cells than planned"});
+    return make_paths(plan, in);
+  }
   if (!further) further = std::move(at_cells);
   constexpr auto all = std::numeric_limits<uint32_t>::max();
   const bool is_picture = in.cells->view != nullptr;

@@ -176,6 +176,7 @@ PixelSampling sampling_by_paths(const PathForecast& forecast, double error, int 
   s.error = error;
   s.evenness = forecast.evenness;
   s.proportion = forecast.proportion;
+  s.typical = forecast.typical;
   return s;
 }
 

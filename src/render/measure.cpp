@@ -139,12 +139,13 @@ class PointsMeasuring {
     return {hash_of(options_.seed, uint64_t(round), stream::measuring_rounds), options_.threads,
             samples_of_batch_, nullptr, stop_};
   }
-  // Returns the integrator with the method's direct light and path-traced indirect light.
+  // Returns the integrator with the method's direct light and path-traced indirect light. Paths
+  // that end at cells become whole paths.
   const Integrator& by_paths() {
     MethodSettings settings = settings_;
     settings.measures_by_paths = true;
-    if (!by_paths_)
-      by_paths_ = make_integrator(scene_, options_.method, settings, preparation_, nullptr);
+    const Method method = options_.method == Method::cached_path ? Method::path : options_.method;
+    if (!by_paths_) by_paths_ = make_integrator(scene_, method, settings, preparation_, nullptr);
     return *by_paths_;
   }
   PointValues measured_by_method(CellInput* cells) {

@@ -13,6 +13,9 @@ namespace troffer {
 
 namespace {
 
+// Least number of samples of a pixel with the outline of a lamp of unknown coverage: surrogates,
+// and paths where there are none.
+constexpr double least_with_lamp = 256, least_paths_with_lamp = 1024;
 constexpr std::array<std::pair<int, int>, 4> neighbours{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
 
 bool is_inside(const PixelRect& w, int x, int y) {
@@ -314,7 +317,7 @@ int surrogates_wanted(const RefinementView& v, int x, int y, const RefinementOpt
        v.edges.has_sub_pixel_feature(x, y) ? variance_of_sub_pixel_feature(s.mean) : 0.0});
   // Stratified samples of a pixel with an edge err by n^-3/4. The minimum applies since the
   // neighbours may not have seen the lamp.
-  const double least = is_light_known ? 64 : has_light ? 256 : 0;
+  const double least = is_light_known ? 64 : has_light ? least_with_lamp : 0;
   const double wanted = variance > 0 ? std::pow(variance / sqr(allowed), 2.0 / 3) : 0;
   if (std::max(wanted, least) <= 4) return 0;
   int count = 16;
@@ -357,6 +360,9 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_surrogates, i
   // A slope leaves a variance of n^-3 with n stratified samples.
   if (!options.is_noise) wanted = std::max(wanted, std::cbrt(s.slope_variance / sqr(allowed)));
   if (has_surrogates) wanted = std::max(wanted, double(options.least_with_surrogates));
+  // The few first rays of the pixels around may all have missed a lamp smaller than a pixel.
+  if (options.is_noise && v.edges.has_unknown_light_edge(x, y))
+    wanted = std::max(wanted, least_paths_with_lamp);
   return wanted < double(most) ? std::clamp(int(std::ceil(wanted)), first, most) : most;
 }
 

@@ -281,6 +281,9 @@ void TileTracer::surrogates(const PixelRect& tile, TileWork& w) {
 
 double TileTracer::typical_luminance(const PixelRect& image, TileWork& w) const {
   constexpr int most = 16;  // rays along each side
+  // Few single paths would miss most of a picture's light.
+  if (const double of_forecast = integrator_.sampling().typical; of_forecast > 0)
+    return of_forecast;
   begin(w);
   // independent of the picture's own samples
   const uint64_t seed = hash_of(options_.seed, stream::typical_luminance);

@@ -25,6 +25,7 @@ struct PixelSampling {
   // about n^(1 + evenness) independent ones.
   double evenness = 0;
   double proportion = 0;  // of the picture (allowed_error.h); 0: each pixel reaches its own error
+  double typical = 0;     // usual luminance of the picture (allowed_error.h); 0: not known
   bool is_by_noise() const { return most > 0; }
 };
 

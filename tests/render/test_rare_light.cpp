@@ -1,125 +1,84 @@
-// Standard errors where few of many samples find light.
-#include "render/rare_light.h"
-
+// Pictures by paths where few paths find light: a lamp smaller than a pixel, and a lamp in a tube.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 
-#include "base/random.h"
-#include "render/sample_sets.h"
+#include "base/units.h"
+#include "render/pictures.h"
+#include "support/light_scenes.h"
+#include "support/surfaceless_lights.h"
 
 using namespace troffer;
+using namespace troffer::test;
 
 namespace {
 
-int poisson(Random& random, double mean) {
-  int n = -1;
-  for (double left = std::exp(-mean), product = 1; product > left || n < 0; ++n)
-    product *= random.next_double();
-  return n;
+Scene grey_room() {
+  Scene s;
+  add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {0, 0, 0}, {4, 4, 3});
+  return s;
 }
 
-double normal(Random& random) {
-  double sum = -6;
-  for (int i = 0; i < 12; ++i) sum += random.next_double();
-  return sum;
-}
-
-// Returns a point of `lx`, by 32 sets that err by `noise` each. A part `rare` of its light comes
-// from `met` samples on average over all sets.
-PointLight point(Random& random, double lx, double noise, double rare, double met) {
-  SampleSets sets;
-  for (int s = 0; s < most_sets; ++s) {
-    const double came = met > 0 ? poisson(random, met / most_sets) * most_sets / met : 0;
-    sets.add({}, lx * (1 - rare + rare * came + noise * normal(random)));
-  }
-  PointLight p;
-  p.all = p.indirect = {Rgb{}, sets.luminance(), sets.standard_error()};
-  p.other_part_error = sets.standard_error();
-  p.kurtosis = sets.kurtosis();
-  p.samples = 4096;
-  return p;
-}
-
-std::vector<size_t> all_of(const std::vector<PointLight>& points) {
-  std::vector<size_t> which(points.size());
-  std::iota(which.begin(), which.end(), size_t{0});
-  return which;
-}
-
-double share_that_holds(const std::vector<PointLight>& points, double lx) {
-  int inside = 0;
-  for (const PointLight& p : points)
-    inside += std::abs(p.all.illuminance_lx - lx) <= 1.96 * p.all.standard_error;
-  return double(inside) / double(points.size());
+RenderOptions tiny_picture(double error) {
+  RenderOptions o;
+  o.indirect = Indirect::automatic;
+  o.error = error;
+  o.width = 24;
+  o.height = 18;
+  o.threads = 2;
+  return o;
 }
 
 }  // namespace
 
-TEST_CASE("kurtosis: 3 for normal sets, the number of sets if one differs from all others") {
-  SampleSets same;
-  for (int s = 0; s < most_sets; ++s) same.add({}, 7);
-  CHECK(same.kurtosis() == 3);
-  SampleSets one;
-  for (int s = 0; s < most_sets; ++s) one.add({}, s == 11 ? 9 : 7);
-  const double n = most_sets;
-  CHECK(one.kurtosis() == doctest::Approx(n - 2 + 1 / (n - 1)).epsilon(1e-9));
-  Random random(3);
-  double sum = 0;
-  constexpr int lists = 4000;
-  for (int k = 0; k < lists; ++k) {
-    SampleSets sets;
-    for (int s = 0; s < most_sets; ++s) sets.add({}, 1e3 + normal(random));
-    sum += sets.kurtosis() / lists;
-  }
-  // Kurtosis of n normal samples: 3 (n - 1) / (n + 1). Sums of twelve uniform numbers are 0.1 below
-  // normal.
-  CHECK(sum == doctest::Approx(2.9 * (n - 1) / (n + 1)).epsilon(0.02));
-}
-
-TEST_CASE("points that missed rare light get the error that others of the list have found") {
-  Random random(1);
-  std::vector<PointLight> points;
-  for (int i = 0; i < 300; ++i) points.push_back(point(random, 100, 0.001, 0.02, 1.5));
-  CHECK(share_that_holds(points, 100) < 0.8);
-  // One of them, with the information of all.
-  std::vector<PointLight> few = points;
-  size_t quiet = 0;
-  while (few[quiet].all.standard_error > 0.1) ++quiet;
-  raise_errors_for_rare_light(few, {quiet});
-  CHECK(few[quiet].all.standard_error > 0.5);
-  CHECK(few[quiet + 1].all.standard_error == points[quiet + 1].all.standard_error);
-  raise_errors_for_rare_light(points, all_of(points));
-  CHECK(share_that_holds(points, 100) > 0.95);
-  for (const PointLight& p : points) {
-    CHECK(p.indirect.standard_error == doctest::Approx(p.all.standard_error));
-    CHECK(p.other_part_error == doctest::Approx(p.all.standard_error));
+TEST_CASE("paths: a lamp much smaller than its pixel is found") {
+  Scene s = grey_room();
+  const float radius = 0.01f, radiance = 3000;
+  const Vec3 eye{0.5f, 0.5f, 1.5f}, target{3.5f, 3, 1.8f}, lamp{2.6f, 2.4f, 2};
+  add_sphere_light(s, add_diffuse(s, Rgb{0}), lamp, radius, Rgb{radiance});
+  const PreparedScene scene(std::move(s));
+  // The shorter side of 18 pixels has 60°. A sphere beside the axis covers more than on it.
+  const double focal = 9 / std::tan(pi / 6),
+               depth = double(dot(lamp - eye, normalize(target - eye))),
+               cosine = depth / double(length(lamp - eye)),
+               covered = pi * sqr(double(radius) * focal / depth) / cosine,
+               expected = covered * double(radiance);
+  for (const double error : {0.3, 0.05}) {
+    CAPTURE(error);
+    const RenderResult r =
+        render_now(scene, look_at(eye, target, {0, 0, 1}, 60), tiny_picture(error));
+    CHECK(r.statistics.is_by_paths);
+    double most = 0;
+    for (const Rgb& pixel : r.layers[0].image.pixels)
+      most = std::max(most, double(luminance(pixel)));
+    // About ten of 1024 rays meet the lamp.
+    CHECK(most == doctest::Approx(expected).epsilon(0.5));
   }
 }
 
-TEST_CASE("points with normally distributed sets keep their errors, and so does a single point") {
-  Random random(2);
-  std::vector<PointLight> points;
-  for (int i = 0; i < 300; ++i) points.push_back(point(random, 100, i % 2 == 0 ? 0.01 : 0.1, 0, 0));
-  const std::vector<PointLight> before = points;
-  raise_errors_for_rare_light(points, all_of(points));
-  for (size_t i = 0; i < points.size(); ++i)
-    CHECK(points[i].all.standard_error <= before[i].all.standard_error * 1.1);
-  std::vector<PointLight> one{point(random, 100, 0.001, 0.02, 1)};
-  const double own = one[0].all.standard_error;
-  raise_errors_for_rare_light(one, all_of(one));
-  CHECK(one[0].all.standard_error == doctest::Approx(own));
-}
-
-TEST_CASE("neither dark points, with large relative errors, nor bright ones affect the others") {
-  Random random(4);
-  std::vector<PointLight> points;
-  for (int i = 0; i < 100; ++i) points.push_back(point(random, 1e-3, 0.01, 0.9, 1));
-  for (int i = 0; i < 100; ++i) points.push_back(point(random, 100, 0.01, 0, 0));
-  const std::vector<PointLight> before = points;
-  raise_errors_for_rare_light(points, all_of(points));
-  for (size_t i = 0; i < 100; ++i) CHECK(points[i].all.standard_error < 3e-3);
-  for (size_t i = 100; i < 200; ++i)
-    CHECK(points[i].all.standard_error < 1.2 * before[i].all.standard_error);
+TEST_CASE("paths: rare light takes no more rays than forecast") {
+  Scene s = grey_room();
+  const uint32_t black = add_diffuse(s, Rgb{0.02f});
+  // A tube that is open at the top, and a lamp in it that shines up.
+  const float x0 = 1, x1 = 1.2f, y0 = 0.4f, y1 = 0.6f, z0 = 2, z1 = 2.6f;
+  add_quad(s, black, {Vec3{x0, y0, z0}, {x1, y0, z0}, {x1, y0, z1}, {x0, y0, z1}});
+  add_quad(s, black, {Vec3{x1, y0, z0}, {x1, y1, z0}, {x1, y1, z1}, {x1, y0, z1}});
+  add_quad(s, black, {Vec3{x1, y1, z0}, {x0, y1, z0}, {x0, y1, z1}, {x1, y1, z1}});
+  add_quad(s, black, {Vec3{x0, y1, z0}, {x0, y0, z0}, {x0, y0, z1}, {x0, y1, z1}});
+  const uint32_t lamp = add_quad(s, add_diffuse(s, Rgb{0}),
+                                 {Vec3{1.02f, 0.42f, 2.01f},
+                                  {1.18f, 0.42f, 2.01f},
+                                  {1.18f, 0.58f, 2.01f},
+                                  {1.02f, 0.58f, 2.01f}});
+  make_light(s, lamp, Rgb{500}, false);
+  add_point(s, {2, 2, 1}, Rgb{1e-5f});
+  const PreparedScene scene(std::move(s));
+  const RenderOptions o = tiny_picture(1);
+  const RenderResult r =
+      render_now(scene, look_at({0.5f, 0.5f, 1.5f}, {3.5f, 3, 0.8f}, {0, 0, 1}, 60), o);
+  REQUIRE(r.statistics.is_by_paths);
+  REQUIRE(r.statistics.plan.forecast);
+  const double rays = double(r.statistics.counters.viewing_rays) / (o.width * o.height);
+  CHECK(rays < 2 * r.statistics.plan.forecast->viewing_rays);
 }
