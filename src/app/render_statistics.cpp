@@ -37,9 +37,12 @@ nlohmann::ordered_json plan_json(const MethodPlan& plan) {
 
 // Work that costs.h weighs, besides viewing rays.
 nlohmann::ordered_json work_json(const Counters& n) {
-  return {{"extension_rays", n.extension_rays}, {"shadow_rays", n.shadow_rays},
-          {"clusters", n.clusters},             {"masks", n.masks},
-          {"mask_facets", n.mask_facets},       {"points", n.points}};
+  return {{"extension_rays", n.extension_rays},
+          {"shadow_rays", n.shadow_rays},
+          {"clusters", n.clusters},
+          {"masks", n.masks},
+          {"mask_facets", n.mask_facets},
+          {"points", n.points}};
 }
 
 nlohmann::ordered_json preparation_json(const Counters& n) {
