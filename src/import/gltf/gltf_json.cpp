@@ -72,7 +72,8 @@ std::string printable(std::string_view text) {
 JsonDocument::JsonDocument(std::string file, std::string text, const JsonLimits& limits)
     : file_(std::move(file)), text_(std::move(text)) {
   if (text_.starts_with("\xef\xbb\xbf"))
-    throw InputError(file_, 1, 1, "not valid JSON: begins with a byte order mark");
+    throw InputError(file_, 1, 1,
+                     "not valid JSON: begins with a byte order mark; save it as UTF-8 without one");
   check_limits(text_, limits, file_);
   try {
     json_ = std::make_unique<Json>(Json::parse(text_));
