@@ -69,15 +69,20 @@ FurtherChoice choose_further_way(std::span<const TestPixel> pixels, double cost_
                                  std::span<const TestedWay> tested, double most_even) {
   TROFFER_CHECK(pixels.size() == test_pixels);
   constexpr double least_missing = 0.1;
-  const TestResult first = seen_by_first_rays(pixels, tested, most_even);
+  const TestResult first = seen_by_first_rays(pixels, tested, most_even),
+                   untested = seen_by_first_rays(pixels, {}, most_even);
   double planned = 0;
   for (const TestPixel& p : pixels) planned += p.planned / double(pixels.size());
   TROFFER_CHECK(planned > 0);
-  // A way that varies more takes more rays, for the same error.
-  const double of_first = samples_for({.chance = first.variance}, 1, most_even, 0);
+  const auto samples = [&](double variance) {
+    return samples_for({.chance = variance}, 1, most_even, 0);
+  };
+  // More first rays than planned if their tests show more variance. A way that varies more than
+  // they do takes more rays, for the same error.
+  const double times_of_first = samples(first.variance) / samples(untested.variance);
   const auto choice = [&](const FurtherWay& way, double variance, double cost) {
-    const double rays = first.variance > 0 ? of_first * variance / first.variance : of_first;
-    return FurtherChoice{way, rays, rays / planned, rays * cost};
+    const double times = times_of_first * variance / first.variance;
+    return FurtherChoice{way, planned * times, times, planned * times * cost};
   };
   FurtherChoice best = choice(further_ways.front(), first.variance, cost_of_first);
   double least = first.variance * cost_of_first;
