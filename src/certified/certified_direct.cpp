@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/ablation.h"
 #include "base/error.h"
 
 namespace troffer {
@@ -34,7 +35,8 @@ CertifiedSettings certified_settings(double error, size_t lights, int viewing_ra
   CertifiedSettings s;
   s.gloss_samples = points_for(error);
   s.shadow_rays = rays_for(error * std::sqrt(double(std::max<size_t>(lights, 1))));
-  s.estimator.lattice = error >= coarse_from ? coarse_lattice : fine_lattice;
+  s.estimator.lattice =
+      error >= coarse_from && !is_left_out<"coarse masks">() ? coarse_lattice : fine_lattice;
   // Errors of a pixel's viewing rays are independent.
   s.estimator.mask_error = float(error * std::sqrt(std::clamp(viewing_rays, 1, 4)));
   s.error = error;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/ablation.h"
 #include "base/random.h"
 #include "certified/lit_surfaces.h"
 #include "certified/open_parts.h"
@@ -156,9 +157,11 @@ void CertifiedSources::set_occluders(const Occluders& occluders) {
   if (environment_.cells->all().empty()) return;
   environment_.occluders = &occluders;
   environment_.scene = large_facets(occluders);
-  environment_.shells =
-      ClosedShells(scene_.scene, scene_.panes.is_empty() ? nullptr : &scene_.glass);
+  if (!is_left_out<"closed shells">())
+    environment_.shells =
+        ClosedShells(scene_.scene, scene_.panes.is_empty() ? nullptr : &scene_.glass);
   environment_.seems_shut_out =
+      !is_left_out<"seems shut out">() &&
       are_lit_surfaces_closed(scene_, environment_.points, environment_.shells);
 }
 

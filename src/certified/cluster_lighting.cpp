@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ablation.h"
 #include "base/streams.h"
 #include "certified/open_parts.h"
 #include "shadow/pilot_rays.h"
@@ -47,7 +48,8 @@ void ClusterLighting::add(std::span<const uint32_t> members) {
       !is_closed_off && may_be_proved_far(members) && is_proof_of_far_worth(members);
   std::span<const float> seen;
   const bool are_all_drawn = budget.draws > 0 && budget.effort_divisor > 1;
-  const bool may_be_drawn = budget.draws > 0 && !sources_.groups().are_many();
+  const bool may_be_drawn = budget.draws > 0 && !sources_.groups().are_many() &&
+                            !is_left_out<"samples instead of proofs">();
   if (are_all_drawn || may_be_drawn) set_draws(members, budget.effort_divisor);
   if (may_be_drawn && !are_all_drawn) {
     certify_or_draw(members);
@@ -170,13 +172,16 @@ bool ClusterLighting::is_proof_of_far_worth(std::span<const uint32_t> members) {
   // Above the open share `open_enough`, proofs need more than cost_of_patch_proof rays per sky
   // patch to pay.
   constexpr double cost_of_patch_proof = 40, open_enough = 0.25;
+  if (is_left_out<"sky by rays">()) return true;
   if (s_.far.seems_closed) return false;
   if (!s_.request.is_picture) return true;
-  if (s_.far.is_behind_clutter) return false;
+  if (s_.far.is_behind_clutter && !is_left_out<"rays behind clutter">()) return false;
   const double rays =
       rays_of_hit(s_.far, environment_.points.suns() > 0, double(s_.options.mask_error));
   const size_t cells = sources_.all().size() - environment_.first_source;
-  if (s_.far.open > open_enough && rays < cost_of_patch_proof * double(cells)) return false;
+  if (!is_left_out<"rays to open sky">() && s_.far.open > open_enough &&
+      rays < cost_of_patch_proof * double(cells))
+    return false;
   double all = 0, proofs = cost_of_look;
   for (const uint32_t m : members) {
     all += s_.hits.samples[m] < uint32_t(budget_.viewing_rays)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/ablation.h"
 #include "base/error.h"
 #include "base/random.h"
 #include "base/streams.h"
@@ -220,6 +221,7 @@ bool Builder::make_rows(const std::function<void(double)>& progress) {
   const double most = options_.most_cells;
   if (double(map_->size()) > most || !run_and_go_on(plan_.first_tasks(), most, progress))
     return false;
+  if (is_left_out<"further cell rays">()) return true;
   return has_enough() || run_and_go_on(plan_.further_tasks(map_->frozen()), most, progress);
 }
 
@@ -266,13 +268,14 @@ bool Builder::add_direct(const DirectLight& direct, CellDirectLight& lit) {
   std::vector<uint16_t> draws(map_->size(), 0);
   // The noise of cells is shared by all that see them; measuring points cannot average it out.
   uint32_t each = 0;
-  if (store_ == nullptr && options_.points.most_rays <= 0)
+  if (store_ == nullptr && options_.points.most_rays <= 0 &&
+      !is_left_out<"sampled light of cells">())
     each = samples_instead_of_proofs(*map_, lighting_by(direct),
                                      {options_.error * cells_of_mean, options_.rays_for_direct},
                                      counters_);
   for (uint32_t c = 0; store_ == nullptr && c < draws.size(); ++c) {
     const uint32_t rays = plan_.first_rays(c);
-    if (each > 0 || rays < rays_for_proofs)
+    if (each > 0 || (rays < rays_for_proofs && !is_left_out<"sampled light of small cells">()))
       draws[c] = uint16_t(std::max(draws_of_ray * rays, each * rays / RowPlan::rays_of_row));
   }
   add_direct_light(*map_, lighting_by(direct), draws, first, lit, counters_);
@@ -322,6 +325,7 @@ std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, const CellPilo
   statistics_.size = double(map_->size_of_cells());
   statistics_.bytes = double(map_->bytes()) + double(rows_.entry_count()) * sizeof(RowEntry) +
                       double(noise.size() * sizeof(NoiseDraws));
+  if (is_left_out<"lit regions">()) asking_.seen.clear();
   LitRegions bright(scene_.tracer, std::move(asking_.seen), light.irradiance,
                     map_->size_of_cells());
   keep(lit);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ablation.h"
 #include "base/error.h"
 #include "base/random.h"
 #include "base/streams.h"
@@ -67,7 +68,8 @@ CellLightAt Cells::light_at(const CellHit& hit) const {
 bool Cells::look_up(const GatherArrival& a, uint64_t voxel, int bounce, CellsScratch& s) const {
   const uint32_t cell = map_->find(a.hit, a.distance, voxel);
   if (cell == no_cell) return false;
-  if (bounce == 0 && resolves_narrow_ && map_->is_narrow(cell)) return false;
+  if (!is_left_out<"narrow cells">() && bounce == 0 && resolves_narrow_ && map_->is_narrow(cell))
+    return false;
   const uint32_t ray = a.walk.index;
   if (a.distance < map_->near() && bounce == 0) {
     s.part.irradiance[ray] += a.walk.throughput * direct_[cell];
@@ -123,8 +125,8 @@ void Cells::gather_part(size_t rays, CellsScratch& s, Counters& counters) const 
       if (bounce == 0 && (distance == 0 || a.length < distance)) distance = a.length;
       // A ray shorter than the cell is wide does not see the mean of the cell.
       const float short_ray = (bounce > 0 && has_noise_draws() ? 1.0f : 0.25f) * map_->near();
-      const bool is_short =
-          a.distance < short_ray && bounce < (has_noise_draws() ? most_short : short_bounces);
+      const bool is_short = !is_left_out<"short rays">() && a.distance < short_ray &&
+                            bounce < (has_noise_draws() ? most_short : short_bounces);
       if (is_short || !look_up(a, s.voxels[i], bounce, s)) s.arrivals[missed++] = a;
     }
     s.arrivals.resize(missed);

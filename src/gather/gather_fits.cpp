@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ablation.h"
+
 namespace troffer {
 
 namespace {
@@ -44,6 +46,7 @@ int half_of(int x, int y) {
 // record's few rays saw. Surfaces that see each other, as in a corner, do not count, because light
 // changes gradually there.
 bool GatherFits::is_behind_edge(int x, int y, uint32_t r) const {
+  if (is_left_out<"behind edges">()) return false;
   constexpr float close = 3, least_height = 0.03f;
   const GatherRecord& at = records_.all()[r];
   const auto around = [&](const auto& visit) {
@@ -196,7 +199,7 @@ uint32_t GatherFits::further_rays(int x, int y, uint32_t r, Part part) const {
   const double wanted =
       light.spread / std::max(sharers * light.neighbours, 1.0) /
       sqr(gain_of_order * double(allowed_error(at, part, luminance(light.value))));
-  if (!(wanted > 1)) return 0;
+  if (!(wanted > 1) || is_left_out<"further gather rays">()) return 0;
   const double rays = std::min(first_rays * (wanted - 1), double(most_rays - first_rays));
   return uint32_t(rays / 4 + 0.999) * 4;
 }
@@ -218,7 +221,7 @@ float GatherFits::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) 
   const FittedLight light = solved(fit(x, y, r, part, radius, few_along), s);
   const double allowed = double(allowed_error(at, part, luminance(light.value)));
   const double excess = light.spread / std::max(light.neighbours, 1.0) / (allowed * allowed);
-  radius *= float(std::clamp(std::sqrt(excess), 0.5, 2.0));
+  if (!is_left_out<"radius by noise">()) radius *= float(std::clamp(std::sqrt(excess), 0.5, 2.0));
   radius = std::clamp(radius, least, std::clamp(far_radius * distance, least, most));
   const LinearFit all = fit(x, y, r, part, radius, many_along);
   const FittedLight fine = solved(all, s);
@@ -260,7 +263,9 @@ FittedRecord GatherFits::fitted(int x, int y, uint32_t r) const {
   // Away from its record, the error of a fit goes with the square of the distance.
   const float reach =
       std::min(reach_of_error * std::sqrt(float(options_.error)), most_reach) * distance;
-  f.is_alone = behind_edge_[r] != 0 || matte.is_one_sided || gloss.is_one_sided;
+  const bool is_one_sided =
+      !is_left_out<"one-sided fits">() && (matte.is_one_sided || gloss.is_one_sided);
+  f.is_alone = behind_edge_[r] != 0 || is_one_sided;
   f.reach = at.spacing > reach || f.is_alone ? 0 : reach;
   f.rays = std::min(std::max(own_rays(x, y, r, &GatherRecord::matte),
                              at.place.is_there() ? own_rays(x, y, r, &GatherRecord::gloss) : 0.0f),

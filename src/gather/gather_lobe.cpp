@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/ablation.h"
 #include "base/units.h"
 #include "gather/gather_walks.h"
 
@@ -19,6 +20,7 @@ constexpr float least_by_lobe = 0.03f;
 // about gloss² / ((1 - a) / m + a) / n, with m the second moment of cosine-distributed rays.
 float best_share(float matte, float gloss, float m) {
   if (!(m > 1) || !(gloss > 0)) return 0;
+  if (is_left_out<"gather rays by lobe">()) return 0;
   if (!(matte > 0)) return GatherLobe::most_by_lobe;
   const float more = gloss * std::sqrt(1 - 1 / m) / matte - 1 / m;
   if (!(more > 0)) return 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/ablation.h"
 #include "base/random.h"
 #include "base/streams.h"
 
@@ -17,6 +18,7 @@ constexpr float least_radius = 6;
 
 bool has_close_pixels(const Cells& cells, const PictureView& view, uint64_t seed,
                       GatherScratch& viewing, CellsScratch& gathering, Counters& counters) {
+  if (is_left_out<"thinning">()) return false;
   constexpr int along = 24, rays = 4;
   constexpr int64_t least_pixels = 40'000;
   const PixelWindow& image = view.image;

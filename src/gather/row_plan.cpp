@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/ablation.h"
 #include "base/random.h"
 #include "base/streams.h"
 
@@ -30,6 +31,7 @@ constexpr int bounces_of_importance = 24, bounces_of_look = 6;
 }  // namespace
 
 double coarseness(double error, double fine) {
+  if (is_left_out<"coarser cells">()) return 1;
   return std::clamp(error / fine, 1.0, most_coarseness);
 }
 
@@ -86,6 +88,7 @@ std::vector<uint32_t> RowPlan::cells_to_resolve(int bounces) {
 // rays from each cell there, and from all cells that they hit, would grow into an endless tree.
 // With one ray each, the tree is a path.
 uint32_t RowPlan::first_rays(uint32_t cell) const {
+  if (is_left_out<"fewer first cell rays">()) return rays_of_row;
   if (cell >= importance_.size()) return 1;
   const double worth = double(importance_[cell]) / of_ray_;
   uint32_t n = rays_of_row;

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "base/ablation.h"
 #include "gather/uneven_light.h"
 
 namespace troffer {
@@ -53,7 +54,8 @@ bool is_partly_covered(const Tracer& tracer, const CellOutline& cell) {
 
 CellMap::IsUneven uneven_cells(const PreparedScene& scene) {
   return [&scene](const CellOutline& cell, bool is_asked) {
-    return (is_asked && is_partly_covered(scene.tracer, cell)) || is_unevenly_lit(scene, cell);
+    return (is_asked && !is_left_out<"covered cells">() && is_partly_covered(scene.tracer, cell)) ||
+           (!is_left_out<"unevenly lit cells">() && is_unevenly_lit(scene, cell));
   };
 }
 

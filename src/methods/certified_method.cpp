@@ -135,11 +135,13 @@ std::unique_ptr<Integrator> cached_paths_if_cheaper(const MethodPlan& plan, cons
   const int most = most_by_paths(in.settings.most_viewing_rays);
   const PathForecast cached = forecast_paths(*cached_paths(in, cells, {}), *in.cells->view, error,
                                              most, in.cells->seed, in.cells->counters);
+  if (!cached.is_within(most)) return nullptr;
   const GatherTrial trial =
       try_gathers({gathers, reflected, *cells, *in.cells->view, gather_options(in, *cells),
                    std::max(in.settings.viewing_rays, 1), error, cached},
                   in.cells->stop, in.cells->counters);
-  const bool is_cheaper = cached.rays < std::min(plan.forecast->rays, trial.cost);
+  const bool is_cheaper =
+      cached.rays < trial.cost && (!plan.forecast || cached.rays < plan.forecast->rays);
   std::string reason =
       fmt::format("they would take {:.3g} viewing rays per pixel and {:.3g} million rays",
                   cached.viewing_rays, cached.rays * 1e-6);
@@ -179,7 +181,7 @@ std::unique_ptr<Integrator> make_by_cells(const MethodPlan& plan, const MethodIn
   auto gathers = std::make_unique<WaveIntegrator>(
       in.scene, std::make_unique<StagedDirect>(std::move(first), std::move(further), samples),
       std::move(indirect), false, is_picture ? cached_paths(in, cells, {}) : nullptr);
-  if (plan.forecast)
+  if (plan.may_end_paths_at_cells)
     if (std::unique_ptr<Integrator> paths =
             cached_paths_if_cheaper(plan, in, cells, *gathers, reflected))
       return paths;

@@ -15,18 +15,29 @@ namespace troffer {
 
 namespace {
 
-constexpr int windows_across = 3, windows_down = 2;
-// A trial repays if it looks at no more than this share of the picture.
+constexpr int side = GatherRecords::tile_side;
+// A trial looks at no more than this share of the picture, unless one window is more.
 constexpr double most_share = 0.125;
 
+// Rows and columns of windows, spread evenly over the picture.
+struct Windows {
+  int across = 1, down = 1;
+  int count() const { return across * down; }
+};
+Windows windows_of(const PixelWindow& image) {
+  const double pixels = double(image.width()) * image.height(), most = most_share * pixels;
+  for (const Windows w : {Windows{3, 2}, Windows{2, 2}, Windows{2, 1}})
+    if (w.count() * side * side <= most) return w;
+  return {};
+}
+
 // The window is one tile of the gathers, so that its fits have their usual neighbours.
-PixelWindow window_of(const PixelWindow& image, int i) {
-  constexpr int side = GatherRecords::tile_side;
+PixelWindow window_of(const PixelWindow& image, const Windows& windows, int i) {
   const auto first = [](int n, int k, int of) {
     return std::min((2 * k + 1) * n / (2 * of), n - side) / side * side;
   };
-  const int x = first(image.width(), i % windows_across, windows_across),
-            y = first(image.height(), i / windows_across, windows_down);
+  const int x = first(image.width(), i % windows.across, windows.across),
+            y = first(image.height(), i / windows.across, windows.down);
   return {x, y, x + side, y + side};
 }
 
@@ -76,7 +87,6 @@ std::vector<double> own_wanted(const RadianceBatch& seen, const GatherTrialInput
 // Appends, for each pixel of a window, the number of rays that it alone would take. The few rays of
 // one pixel may miss what varies in it, so each is judged with its neighbours.
 void add_wanted(const std::vector<double>& own, std::vector<double>& wanted) {
-  constexpr int side = GatherRecords::tile_side;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) {
       double sum = 0, pixels = 0;
@@ -92,7 +102,7 @@ void add_wanted(const std::vector<double>& own, std::vector<double>& wanted) {
 // `of_first` each, or as cached paths, which vary more.
 double cost_of_further(const std::vector<double>& wanted, double of_first,
                        const GatherTrialInput& in) {
-  constexpr size_t side = GatherRecords::tile_side, of_tile = side / 2;
+  constexpr size_t of_tile = side / 2;
   const double pixels = double(in.view.image.width()) * in.view.image.height(),
                of_cached = in.cached.rays / pixels / in.cached.viewing_rays,
                proportion = proportion_of_samples(wanted, 0);
@@ -100,7 +110,8 @@ double cost_of_further(const std::vector<double>& wanted, double of_first,
   for (size_t i = 0; i < wanted.size(); ++i) {
     const double rays = proportion * share_of_samples(wanted[i], 0);
     if (rays <= in.viewing_rays) continue;
-    const size_t x = i % side, row = i / side, tile = row / of_tile * 2 + x / of_tile;
+    const size_t x = i % size_t(side), row = i / size_t(side),
+                 tile = row / of_tile * 2 + x / of_tile;
     like_first[tile] += (rays - in.viewing_rays) * of_first;
     cached[tile] += std::max(rays, in.cached.viewing_rays) * of_cached;
   }
@@ -112,20 +123,20 @@ double cost_of_further(const std::vector<double>& wanted, double of_first,
 }  // namespace
 
 GatherTrial try_gathers(const GatherTrialInput& in, const StopFlag& stop, Counters& counters) {
-  constexpr int side = GatherRecords::tile_side, windows = windows_across * windows_down;
   GatherOptions options = in.options;
   options.is_trial = true;
   options.group = nullptr;  // every process makes the same trial
   const PixelWindow& image = in.view.image;
-  const double pixels = double(image.width()) * image.height(), looked_at = windows * side * side;
+  const Windows windows = windows_of(image);
+  const double pixels = double(image.width()) * image.height(),
+               looked_at = windows.count() * side * side;
   GatherTrial trial;
-  if (looked_at > most_share * pixels || image.width() < side || image.height() < side)
-    return trial;
+  if (image.width() < side || image.height() < side) return trial;
   double of_gathers = 0, of_first = 0;
   std::vector<double> wanted;
-  for (int i = 0; i < windows; ++i) {
+  for (int i = 0; i < windows.count(); ++i) {
     PictureView view = in.view;
-    view.window = window_of(image, i);
+    view.window = window_of(image, windows, i);
     Counters gathering, first;
     std::shared_ptr<const GatherRecords> records =
         GatherRecords::make(in.cells, view, options, nullptr, stop, gathering);

@@ -27,8 +27,8 @@ struct GatherTrialInput {
 };
 
 // Gathers in a few windows, traces their first viewing rays, and estimates from these what the
-// further ones will cost. Returns a cost of 0 after a stop, and for pictures so small that a trial
-// would not pay off. Adds its work to `counters`.
+// further ones will cost. Returns a cost of 0 after a stop, and for pictures smaller than a window.
+// Adds its work to `counters`.
 GatherTrial try_gathers(const GatherTrialInput& in, const StopFlag& stop, Counters& counters);
 
 }  // namespace troffer

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/ablation.h"
 #include "methods/methods.h"
 #include "methods/path.h"
 
@@ -19,7 +20,8 @@ CertifiedSettings settings_of_first(const MethodInput& in) {
   constexpr int draws = 32;
   CertifiedSettings s =
       certified_settings(in.settings.error, in.scene.scene.lights.size(), in.settings.viewing_rays);
-  if (in.cells != nullptr && in.cells->view != nullptr && in.settings.error >= coarse)
+  if (in.cells != nullptr && in.cells->view != nullptr && in.settings.error >= coarse &&
+      !is_left_out<"light samples at coarse errors">())
     s.draws = draws;
   return s;
 }
@@ -30,14 +32,15 @@ CertifiedSettings settings_of_first(const MethodInput& in) {
 CertifiedSettings drawn_beyond(const MethodInput& in, double coarse) {
   constexpr int draws = 16, few_draws = 8;  // powers of two stratify best
   CertifiedSettings s = settings_beyond_first(in);
-  if (in.cells->view != nullptr) s.draws = in.settings.error >= coarse ? few_draws : draws;
+  if (in.cells->view != nullptr && !is_left_out<"light samples beyond first hits">())
+    s.draws = in.settings.error >= coarse ? few_draws : draws;
   return s;
 }
 // Settings at the further viewing rays of a pixel, each of which is a small part of it, and at what
 // gloss shows along any viewing ray.
 CertifiedSettings settings_of_further(const MethodInput& in) {
   CertifiedSettings s = drawn_beyond(in, 0.1);
-  s.matte_draw_factor = 2;
+  if (!is_left_out<"more samples of matte hits">()) s.matte_draw_factor = 2;
   return s;
 }
 // Settings of the further viewing rays of a picture of direct light alone. The error of a pixel
@@ -51,20 +54,21 @@ CertifiedSettings settings_of_further_direct(const MethodInput& in) {
   return s;
 }
 
-// Returns the forecast for path tracing, or nothing where paths must not replace cells: indirect
-// light chosen explicitly, no picture, or cells kept in a store.
+// True if paths may replace cells or gathers. They may not where indirect light was chosen
+// explicitly, without a picture, or where a store keeps the cells.
+bool may_be_by_paths(const MethodInput& in) {
+  return in.settings.indirect == Indirect::automatic && in.cells->view != nullptr &&
+         in.cells->store == nullptr;
+}
+
+// Returns the forecast for path tracing, or nothing if it cannot reach the asked error.
 std::optional<PathForecast> forecast(const MethodInput& in) {
   const CellInput& cells = *in.cells;
-  if (in.settings.indirect != Indirect::automatic || cells.view == nullptr ||
-      cells.store != nullptr)
-    return std::nullopt;
   const int most = most_by_paths(in.settings.most_viewing_rays);
   const PathForecast f =
       forecast_paths(PathIntegrator(in.scene, {}), *cells.view, error_by_paths(in.settings.error),
                      most, cells.seed, in.cells->counters);
-  // Near the limit of viewing rays, many pixels would stop before they reach the asked error.
-  if (4 * f.viewing_rays > most) return std::nullopt;
-  return f;
+  return f.is_within(most) ? std::optional(f) : std::nullopt;
 }
 
 std::string sampling_in_words(const CertifiedSettings& s) {
@@ -86,9 +90,8 @@ void plan_cells(MethodPlan& plan, const MethodInput& in) {
   plan.at_cells = settings_of_cells(in);
   plan.most_cells = in.cells->most_cells;
   if (plan.forecast) {
-    // Preparation takes at most a third of what path tracing would take, half of it for direct
-    // light.
-    const double budget = std::min(plan.forecast->rays_for_cells, plan.forecast->rays / 3);
+    // Preparation takes at most half of what path tracing would take, half of it for direct light.
+    const double budget = std::min(plan.forecast->rays_for_cells, plan.forecast->rays / 2);
     plan.most_cells = budget / rays_of_cell;
     plan.rays_for_direct = budget / 2;
   }
@@ -128,7 +131,7 @@ double error_beyond_first(const MethodInput& in) {
 CertifiedSettings settings_beyond_first(const MethodInput& in) {
   constexpr int few_points = 8;
   CertifiedSettings s = certified_settings(error_beyond_first(in), in.scene.scene.lights.size());
-  s.gloss_samples = few_points;
+  if (!is_left_out<"few samples of gloss">()) s.gloss_samples = few_points;
   return s;
 }
 
@@ -147,7 +150,9 @@ MethodPlan plan_certified(const MethodInput& in) {
     return plan;
   }
   if (needs_cells(Method::certified, in.settings.indirect)) {
-    plan.forecast = forecast(in);
+    plan.may_end_paths_at_cells = may_be_by_paths(in) && !is_left_out<"cached paths">();
+    if (may_be_by_paths(in) && !is_left_out<"paths instead of cells">())
+      plan.forecast = forecast(in);
     if (plan.forecast && plan.forecast->rays_for_cells < 0) {
       plan.parts.push_back(
           {"all light", "path tracing",

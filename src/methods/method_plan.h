@@ -36,6 +36,8 @@ struct MethodPlan {
   std::vector<PlannedPart> parts;
   // Test of path tracing, where paths may replace cells.
   std::optional<PathForecast> forecast;
+  // True if paths that end at cells may replace gathers.
+  bool may_end_paths_at_cells = false;
 
   // certified: settings of direct light at first and further viewing rays, and at cells.
   CertifiedSettings first{}, further{}, at_cells{};

@@ -24,6 +24,9 @@ struct PathForecast {
   // Budget for making cells, in rays: `rays` minus the least cost of all other work of a picture by
   // cells. Negative: paths cost less even if cells are free.
   double rays_for_cells = 0;
+  // True if pixels reach the asked error with at most so many viewing rays. Near the limit of the
+  // mean, many pixels would stop before.
+  bool is_within(int most) const { return 4 * viewing_rays <= most; }
 };
 
 // Forecasts the cost of a picture. error: allowed in a pixel (allowed_error()). most: limit of

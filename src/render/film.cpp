@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/ablation.h"
 #include "render/aov_rows.h"
 
 namespace troffer {
@@ -110,7 +111,8 @@ double Film::variance_beyond(size_t i, double independent) const {
     const PixelEstimate e = estimate_of(i);
     const bool has_surrogates = !known_.empty() && known_[i].surrogates.count > 0;
     const double error = has_surrogates ? e.error_of_rest : e.standard_error;
-    return gain_of_edges * std::max(sqr(error * n) - independent, 0.0);
+    return (is_left_out<"gain of edges">() ? 1.0 : gain_of_edges) *
+           std::max(sqr(error * n) - independent, 0.0);
   }
   const Known& k = known_[i];
   const double spread = sqr(error_of_mean(k.blocks, k.squares_of_blocks, blocks) * blocks);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/ablation.h"
 #include "base/units.h"
 #include "render/sample_spread.h"
 #include "transport/allowed_error.h"
@@ -235,7 +236,7 @@ Surroundings look_around(const RefinementView& v, int x, int y, bool are_compara
   if (count == 0) return s;
   s.mean /= double(count);
   s.mean_variance /= double(count);
-  if (are_comparable)
+  if (are_comparable && !is_left_out<"slopes">())
     s.slope_variance = slope.variance();
   else
     s.low = s.high;
@@ -270,6 +271,7 @@ double variance_amid_clutter(const RefinementView& v, int x, int y, double of_sl
       ++varying;
       sum += variance;
     }
+  if (is_left_out<"clutter">()) return 0;
   constexpr double least = 0.25, full = 0.5;
   if (varying <= least * all) return 0;
   const double weight = std::min((double(varying) / all - least) / (full - least), 1.0);
@@ -281,6 +283,7 @@ double variance_amid_clutter(const RefinementView& v, int x, int y, double of_sl
 // rim.
 template <class Of>
 double variance_along_edge(const RefinementView& v, int x, int y, const Of& of) {
+  if (is_left_out<"variance along edges">()) return 0;
   constexpr int reach = PixelLooks::reach;
   int count = 0;
   double sum = 0;
@@ -339,7 +342,7 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_surrogates, i
   const bool has_edge = v.edges.has_surface_edge(x, y);
   const bool is_uneven = has_edge || s.has_contrast || s.has_sub_pixel_features;
   if (!is_uneven && !options.is_everywhere) return first;
-  Varying neighbour = is_uneven ? s.largest : s.usual;
+  Varying neighbour = is_uneven && !is_left_out<"largest neighbour">() ? s.largest : s.usual;
   if (has_surrogates && s.apart.variance > neighbour.variance) neighbour = s.apart;
   double variance = neighbour.variance;
   if (options.is_noise) variance = s.mean_variance;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/ablation.h"
 #include "base/error.h"
 #include "base/random.h"
 #include "base/streams.h"
@@ -173,7 +174,7 @@ FurtherChoice TileTracer::choose_way(const PixelRect& tile, double cost_of_first
   double wanted = 0;
   for (const Pixel2& p : pixels_in_order(tile)) wanted += further_rays_planned(p);
   FurtherChoice best{further_ways.front()};
-  if (!further_.has_surrogates() || !(wanted > 0)) return best;
+  if (!further_.has_surrogates() || !(wanted > 0) || is_left_out<"further ways">()) return best;
   const std::vector<Pixel2> pixels = pixels_to_test(tile, wanted);
   std::vector<TestPixel> before;
   double planned = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ablation.h"
 #include "base/merge_polygons.h"
 #include "base/random.h"
 #include "base/streams.h"
@@ -220,6 +221,7 @@ std::shared_ptr<const MirrorImages> MirrorImages::make(const PreparedScene& scen
   auto images = std::make_shared<MirrorImages>();
   images->of_triangle_.resize(scene.scene.meshes.size());
   if (scene.primitives.size() == 0) return nullptr;
+  if (is_left_out<"mirror images">()) return of_relays(scene);
   images->add_relays(scene);
   const std::vector<bool> is_broad = broad_lights(scene);
   size_t triangles = 0;

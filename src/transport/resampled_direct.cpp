@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ablation.h"
 #include "base/random.h"
 #include "base/simd.h"
 #include "light/rectangle_receivers.h"
@@ -20,7 +21,8 @@ constexpr size_t fewest_lights = 2, most_lights = 8;
 
 bool ResampledDirect::suits(const PreparedScene& scene) {
   const std::vector<LightPrimitive>& all = scene.primitives.all();
-  return all.size() >= fewest_lights && all.size() <= most_lights &&
+  return !is_left_out<"resampled direct light">() && all.size() >= fewest_lights &&
+         all.size() <= most_lights &&
          std::all_of(all.begin(), all.end(), [](const LightPrimitive& p) {
            return p.shape == PrimitiveShape::rectangle && !p.is_textured;
          });

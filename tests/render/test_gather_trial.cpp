@@ -31,7 +31,7 @@ TEST_CASE("gathers: what surrogate samples resolve does not count as noise") {
   RenderOptions o;
   o.indirect = Indirect::automatic;
   o.error = 0.1;
-  o.width = 128;  // the least size for a trial
+  o.width = 128;
   o.height = 96;
   o.threads = 2;
   const RenderResult r =
@@ -46,4 +46,21 @@ TEST_CASE("gathers: what surrogate samples resolve does not count as noise") {
                                r.statistics.counters.extension_rays);
   CHECK(forecast < 3 * actual);
   CHECK(forecast > actual / 3);
+}
+
+TEST_CASE("gathers: small pictures, too, compare them with cached paths") {
+  Scene s;
+  const uint32_t grey = add_diffuse(s, Rgb{0.6f});
+  add_box_inside(s, grey, {-2, -2, 0}, {2, 2, 2.5f});
+  add_ceiling_light(s, 1, 2.4f, Rgb{10});
+  const PreparedScene scene(std::move(s));
+  RenderOptions o;
+  o.indirect = Indirect::automatic;
+  o.error = 0.02;
+  o.width = 32;
+  o.height = 24;
+  o.threads = 2;
+  const PlannedPart decision = decision_of(
+      render_now(scene, look_at({-1.8f, -1.8f, 1}, {0.5f, 0.5f, 1.8f}, {0, 0, 1}, 70), o));
+  CHECK(decision.reason.find("gathers") != std::string::npos);
 }
