@@ -278,6 +278,24 @@ void Drawing::of_members(std::span<uint32_t> members, const std::vector<float>& 
   }
 }
 
+// Sorts terms by place. Places are spread evenly over [0,1), so a bucket for each leaves little to
+// sort.
+void sort_terms(DrawnLightsScratch& s) {
+  const size_t n = s.terms.size();
+  const auto bucket_of = [n](const std::pair<float, float>& term) {
+    return std::min(size_t(term.first * float(n)), n - 1);
+  };
+  s.begins.assign(n + 1, 0);
+  for (const auto& term : s.terms) ++s.begins[bucket_of(term) + 1];
+  for (size_t i = 1; i <= n; ++i) s.begins[i] += s.begins[i - 1];
+  s.sorted.resize(n);
+  for (const auto& term : s.terms) s.sorted[s.begins[bucket_of(term)]++] = term;
+  s.terms.swap(s.sorted);
+  for (size_t i = 1; i < n; ++i)
+    for (size_t k = i; k > 0 && s.terms[k] < s.terms[k - 1]; --k)
+      std::swap(s.terms[k], s.terms[k - 1]);
+}
+
 // Adds the variance of a run's sum. Sorted by light, samples are strata of equal probability, so
 // half the squared differences of neighbours estimate it. Samples of one pixel share a sequence.
 void add_variance(const WaitingHits& hits, std::span<const DrawnLightsScratch::Draw> run,
@@ -289,7 +307,7 @@ void add_variance(const WaitingHits& hits, std::span<const DrawnLightsScratch::D
     s.terms.emplace_back(d.place, (arrives ? luminance(d.light) : 0.0f) - luminance(d.expected));
   }
   if (s.terms.empty()) return;
-  std::sort(s.terms.begin(), s.terms.end());
+  sort_terms(s);
   const auto n = float(s.terms.size());
   float squares = 0;
   for (size_t i = 1; i < s.terms.size(); ++i)

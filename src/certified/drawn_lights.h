@@ -86,7 +86,8 @@ struct DrawnLightsScratch {
   std::vector<uint8_t> is_valid;
   LightSampleScratch light_samples;
   // Terms of one run: place, and deviation from the expected value.
-  std::vector<std::pair<float, float>> terms;
+  std::vector<std::pair<float, float>> terms, sorted;
+  std::vector<uint32_t> begins;  // of buckets of terms
 
   void resize(size_t n);
 };
