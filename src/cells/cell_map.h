@@ -3,13 +3,13 @@
 //
 // A hit belongs to a cell of its voxel and of the axis direction to which its normal points most.
 // Voxels have the scene's cell size, half of it where the ray came from nearby, twice or more where
-// it came from far away. Among several cells of a voxel it takes the first compatible one. That is
-// in one plane with it or on one curved surface, and visible from it if something stands in the
-// voxel. So neither the two sides of a thin wall share a cell, nor the boards of a shelf, nor two
-// rooms on one floor.
+// it came from far away. A voxel can hold several cells; a hit takes the first compatible one. A
+// cell is compatible if it lies in the plane or on the curved surface of the hit. If something
+// stands in the voxel, the cell must also be visible from the hit. Cells therefore never span the
+// two sides of a thin wall, two boards of a shelf, or two rooms on one floor.
 //
-// Where direct light from nearby sources differs much within a voxel (a lamp close to a wall),
-// cells of half the size replace one, and so on.
+// A cell within which direct light from nearby sources varies much (a lamp close to a wall) is
+// replaced by cells of half the size. These may be halved again.
 //
 // Cells are made in the order of add() and never change, so they are the same for any number of
 // threads. Adding to a copy does not change the original.
