@@ -32,8 +32,9 @@ constexpr uint32_t no_cell = 0xffffffffu;
 constexpr float least_cell = 1e-6f;
 // Hits that a cell keeps: its rays start there, and direct light is computed there.
 constexpr size_t hits_per_cell = 8;
-// Hits that a cell keeps which a picture's own rays meet (CellMap::add, is_asked). Light changes
-// much within a cell at the edge of a shadow, and some pictures get most light from few cells.
+// The same for cells that the picture's own gather rays meet (CellMap::add, is_asked). At the edge
+// of a shadow light varies much within a cell, and some pictures get most of their light from few
+// cells.
 constexpr size_t hits_of_asked_cell = 32;
 
 // Outline of a voxel on the plane of a surface in it, the surface's normal, and the height in

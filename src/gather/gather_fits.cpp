@@ -239,7 +239,7 @@ float GatherFits::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) 
   return distance;
 }
 
-// Returns the rays of a pixel that gathers for itself.
+// Returns the number of gather rays that a pixel needs if it shares none with its neighbours.
 float GatherFits::own_rays(int x, int y, uint32_t r, Part part) const {
   const GatherRecord& at = records_.all()[r];
   return unit * around(x, y, r, part).variance /
