@@ -7,10 +7,10 @@
 
 namespace troffer {
 
-// annual.json: place, settings, and all figures and requirements of grids with their errors.
+// Returns annual.json: place, settings, and the figures and requirements of all grids, with errors.
 std::string annual_json(const AnnualReport& report);
 
-// metrics.csv: one row per sensor, each figure followed by its standard error.
+// Returns metrics.csv: one row per sensor, each figure followed by its standard error.
 std::string annual_metrics(const AnnualReport& report);
 
 }  // namespace troffer

@@ -28,8 +28,9 @@ inline constexpr std::array glare_limits{GlareLimit{0.35, "high"}, GlareLimit{0.
                                          GlareLimit{0.45, "minimum"}};
 constexpr double most_glare_share = 0.05;  // of the hours of use [2]
 
-// Returns Σ L² ω / P² of all sources in every hour, cd²/m⁴ sr, by way of one path and state.
-// place: the eye, its normal the line of sight. Any number of threads may do so for different eyes.
+// Returns Σ L² ω / P² of all glare sources for every hour, in cd²/m⁴ sr, for light that arrives
+// through one light path in one state. place: the eye; its normal is the line of sight. Threads may
+// call it at the same time for different eyes.
 std::vector<float> glare_strengths(const YearOfLight& light, size_t eye, const CellHit& place);
 
 // DGP from the illuminance at the eye and the sum over sources, with evalglare's correction for low

@@ -24,8 +24,8 @@ struct HoneybeePath {
   size_t states = 1;
 };
 
-// Arrays are written while sensors come; nothing remains in the folder without finish(). A grid
-// has no arrays of a path that brings it no light.
+// Writes arrays as sensors are added. The destructor removes them unless finish() was called. A
+// light path that brings no light to a grid gets no arrays for that grid.
 class HoneybeeFolder {
  public:
   // Throws EnvironmentError if a file cannot be written. Names that file systems may refuse are

@@ -313,9 +313,9 @@ int run_render(RenderCommand c) {
   if (group != nullptr && !group->leads()) return exit_done;
   mark = Clock::now();
   Unfinished left;
-  write_files(c, result, camera, lasting, files, left, [&] {
+  write_files(c, result, camera, lasting, files, left, [&, &made = result] {
     seconds.write = seconds_since(mark);
-    return statistics_json(c, result, seconds, seconds_since(start), up.decision);
+    return statistics_json(c, made, seconds, seconds_since(start), up.decision);
   });
   lasting.finish(result);
   if (c.options.parts == 1) keep_cells(scene, cells.get(), c.solution, c.is_quiet);

@@ -72,11 +72,13 @@ std::string missing(const CLI::App& command) {
   return "";
 }
 
-// Reports an option whose value is missing, because it is last or another option follows.
+// Reports an option that is given twice, or whose value is missing because it is last or another
+// option follows.
 std::string without_value(const CLI::App& command, const std::string& what) {
   const std::string typed = what.substr(0, what.find(':'));
   for (const CLI::Option* o : command.get_options()) {
     if (o->get_name() != typed || o->get_items_expected_max() == 0) continue;
+    if (o->count() > 1) return typed + " is given more than once: choose one value";
     return typed + " needs a value: " + typed + " " + value_shown(command.get_name(), *o);
   }
   return typed + " takes no value";

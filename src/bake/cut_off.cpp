@@ -116,8 +116,9 @@ bool is_enclosed(const PreparedScene& scene, const LitPlace& place, float offset
 
 namespace {
 
-// True if a place is dark beside this light. In walls and furniture a little light arrives by cells
-// and gaps; a place as dark in the open belongs to a room of its own.
+// True if a place is dark relative to the light beside it. Inside walls and furniture a little
+// light arrives through gaps and large cells, so enclosed places have a higher limit. A place that
+// is as dark but open belongs to a dark room, and counts.
 bool is_dark(const PreparedScene& scene, const LitPlace& place, float beside, float offset,
              float diagonal) {
   if (place.light <= darkest * beside) return true;

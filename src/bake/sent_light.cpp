@@ -42,9 +42,9 @@ PageTexel SentLight::base(const BakedSurfaces& surfaces, const Atlas& atlas,
   Rgb color{0};
   double alpha = 0, weights = 0;
   for (const uint32_t t : sites.triangles_of(site)) {
-    const auto& [a, b, c] = mesh.triangles[t];
+    const Triangle& v = mesh.triangles[t];
     const std::vector<Vec2>& at = atlas.texel_of_vertex[texel.stand];
-    const FlatTriangle flat{Vec2d(at[a]), Vec2d(at[b]), Vec2d(at[c])};
+    const FlatTriangle flat{Vec2d(at[v[0]]), Vec2d(at[v[1]]), Vec2d(at[v[2]])};
     const FlatPolygon p = in_square(flat, texel.x, texel.y, texel.x + 1, texel.y + 1);
     const double weight = p.area();
     if (!(weight > 0)) continue;
@@ -53,12 +53,13 @@ PageTexel SentLight::base(const BakedSurfaces& surfaces, const Atlas& atlas,
     TexturePlace place;
     const auto set = [&](const std::vector<Vec2>& uvs, Vec2& uv, Vec2& x, Vec2& y) {
       if (uvs.empty()) return;
-      const Look look = look_at({uvs[a], uvs[b], uvs[c]}, flat, middle);
+      const Look look = look_at({uvs[v[0]], uvs[v[1]], uvs[v[2]]}, flat, middle);
       uv = look.at, x = look.along_x, y = look.along_y;
     };
     set(mesh.uvs, place.uv, place.axis_a, place.axis_b);
     set(mesh.uvs_2, place.uv_2, place.axis_2a, place.axis_2b);
-    place.position = (in_world.position(a) + in_world.position(b) + in_world.position(c)) / 3.0f;
+    place.position =
+        (in_world.position(v[0]) + in_world.position(v[1]) + in_world.position(v[2])) / 3.0f;
     const bool is_metal = m.kind == MaterialKind::conductor && !m.is_reflectance;
     const Rgb base = evaluate(scene_.textures, is_metal ? m.specular_color : m.base_color, place) *
                      (is_metal ? reflectance_of_metal(m) : Rgb{1});

@@ -45,8 +45,8 @@ struct BakedSurfaces {
 };
 
 // Makes charts for all meshes that neither emit nor are clear glass. A second set of texture
-// coordinates that can hold a lightmap is used as it is; otherwise it is replaced, unless textures
-// use it. threads: 0: all cores.
+// coordinates is kept if it can hold a lightmap. Otherwise it is replaced, unless textures use it.
+// threads: 0: all cores.
 BakedSurfaces surfaces_of(Scene scene, int threads);
 
 // Sides of a chart that get light.
@@ -62,8 +62,9 @@ enum class LitSides : uint8_t {
 // an empty list means fronts only.
 BakedSurfaces with_sides(BakedSurfaces surfaces, const std::vector<std::vector<LitSides>>& sides);
 
-// Moves the two layers of a place apart, each toward its front by a few rounding errors of
-// coordinates. Readers that show the backs of emitting surfaces need this; troffer is one.
+// Moves two layers at the same place apart, each towards its front by a few rounding errors of
+// coordinates. Some readers, troffer among them, show the backs of emitting surfaces and would
+// otherwise show the wrong layer.
 void lift_layers(BakedSurfaces& surfaces);
 
 }  // namespace troffer

@@ -76,8 +76,8 @@ inline Split facet_split(const Bsdf& b, float c) {
   return is_coated_glass(b) ? coated_split(b, c, facet_pass(b, c)) : split_at(b, c);
 }
 
-// Returns the coat's pass for two directions on the viewer's side that mirror each other about the
-// normal m, at cosine c.
+// Returns the share of light that the coat passes, for two directions on the viewer's side that
+// mirror each other about the microfacet normal m, with cosine c to it.
 inline float reflected_pass(const Bsdf& b, const Vec3& wo, const Vec3& wi, const Vec3& m, float c) {
   if (!b.is_within) return std::min(b.clear.pass(wo.z), b.clear.pass(wi.z));
   float pass = 0;

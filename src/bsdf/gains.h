@@ -77,8 +77,8 @@ inline float far_glass_gain(const Bsdf& b, float cosine) {
   return has_cover_on_far_side(b) ? lost * b.cover.pass(at) * b.clear.pass(cosine) : lost;
 }
 
-// Returns the share of gloss that the sheen leaves: the smaller pass of the directions on covered
-// sides.
+// Returns the factor by which sheen reduces gloss: the smaller of the shares that the sheen passes
+// in both directions. Directions on a side without sheen count as 1.
 inline float sheen_pass(const Bsdf& b, float cos_o, float cos_i) {
   const auto pass = [&b](float c) { return b.cover.pass(CosineCoordinate(std::abs(c))); };
   const float near = b.is_within ? 1.0f : pass(cos_o);

@@ -42,7 +42,7 @@ void set_diffuse(Bsdf& b, const Inputs& in) {
   set_lambertian(b, rho);
 }
 
-// Sets two widths if there is a grain.
+// Sets the microfacet widths along and across the grain. Leaves one width if both are equal.
 void set_grain(Bsdf& b, const Inputs& in, float strength) {
   b.widths = widths_of(b.alpha, strength);
   if (!(b.widths.along > b.widths.across)) return;

@@ -62,10 +62,11 @@ bool is_pane(const Material& material);  // table_needs.cpp
 // Immutable once built. Bsdfs point into it, so it must outlive them and stay in place.
 class BsdfTables {
  public:
-  // Takes some ten milliseconds. Each distinct index of refraction of rough dielectrics and coats,
-  // pair of grain widths and film over rough glass takes about as much. Sheen takes a tenth of a
-  // second. Beyond `max_indices` distinct indices, similar ones share a table (IndexClasses).
-  // Beyond `max_parameters` pairs of widths or films, a material takes the nearest table.
+  // Builds all tables that the materials need. That takes some ten milliseconds, and as much again
+  // for each distinct index of refraction (of rough dielectrics and coats), pair of grain widths,
+  // and film over rough glass; sheen takes a tenth of a second. Beyond `max_indices` distinct
+  // indices, similar ones share a table (IndexClasses). Beyond `max_parameters` pairs of widths or
+  // films, a material takes the nearest table.
   explicit BsdfTables(const std::vector<Material>& materials);
   explicit BsdfTables(const Scene& scene) : BsdfTables(scene.materials) {}
 

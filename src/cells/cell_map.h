@@ -3,13 +3,13 @@
 //
 // A hit belongs to a cell of its voxel and of the axis direction to which its normal points most.
 // Voxels have the scene's cell size, half of it where the ray came from nearby, twice or more where
-// it came from far away. Among several cells of a voxel it takes the first compatible one. That is
-// in one plane with it or on one curved surface, and visible from it if something stands in the
-// voxel. So neither the two sides of a thin wall share a cell, nor the boards of a shelf, nor two
-// rooms on one floor.
+// it came from far away. A voxel can hold several cells; a hit takes the first compatible one. A
+// cell is compatible if it lies in the plane or on the curved surface of the hit. If something
+// stands in the voxel, the cell must also be visible from the hit. Cells therefore never span the
+// two sides of a thin wall, two boards of a shelf, or two rooms on one floor.
 //
-// Where direct light from nearby sources differs much within a voxel (a lamp close to a wall),
-// cells of half the size replace one, and so on.
+// A cell within which direct light from nearby sources varies much (a lamp close to a wall) is
+// replaced by cells of half the size. These may be halved again.
 //
 // Cells are made in the order of add() and never change, so they are the same for any number of
 // threads. Adding to a copy does not change the original.
@@ -32,8 +32,9 @@ constexpr uint32_t no_cell = 0xffffffffu;
 constexpr float least_cell = 1e-6f;
 // Hits that a cell keeps: its rays start there, and direct light is computed there.
 constexpr size_t hits_per_cell = 8;
-// Hits that a cell keeps which a picture's own rays meet (CellMap::add, is_asked). Light changes
-// much within a cell at the edge of a shadow, and some pictures get most light from few cells.
+// The same for cells that the picture's own gather rays meet (CellMap::add, is_asked). At the edge
+// of a shadow light varies much within a cell, and some pictures get most of their light from few
+// cells.
 constexpr size_t hits_of_asked_cell = 32;
 
 // Outline of a voxel on the plane of a surface in it, the surface's normal, and the height in

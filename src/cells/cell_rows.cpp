@@ -57,10 +57,12 @@ void CellRows::finish(size_t cells) {
   for (size_t i = 0; i < cells; ++i) share_[i] = bounded_share(i);
 }
 
-// Rows that amplify light by the chance of few rays would do so again and again where cells see
-// only themselves or each other. There would be no balance, or one that is far too bright. Rows of
-// more rays amplify less, and others nearby make up for it. Measured: with the strict bound for all
-// rows, a white kitchen lacks .4 % of its reflected light.
+// Returns the factor on a row's weights, bounded so that the row does not amplify light. With few
+// rays the sum of the weights can exceed 1 by chance. Cells that see only themselves or each other
+// would then amplify light at every bounce, and the iteration would diverge or end far too bright.
+// Rows of many rays have a looser bound, because their sums vary less and average out between
+// neighbours. Measured: with the strict bound for all rows, a white kitchen lacks .4 % of its
+// reflected light.
 float CellRows::bounded_share(size_t cell) const {
   if (rays_[cell] == 0) return 1;
   Rgb sum;

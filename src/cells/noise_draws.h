@@ -1,5 +1,5 @@
-// Draws of the error of light that comes from cells. All draws are of the same cells, each with
-// random signs of its own.
+// Random draws of the error that the noise of cells causes in light gathered from them. Each draw
+// gives the error of every cell a random sign; a cell has the same sign wherever it is read.
 #pragma once
 
 #include <array>
@@ -7,9 +7,9 @@
 
 namespace troffer {
 
-// Number of draws. For light of many cells they give its variance as well as this many measurements
-// would. Where one cell brings nearly all, they are one measurement, because one difference of
-// halves is all that is known of its error.
+// Number of draws. For light from many cells, the variance of the draws is as accurate as that of
+// this many repeated measurements. If nearly all light comes from one cell, all draws have the same
+// size: a single difference between two halves of its samples is known.
 constexpr int draws_of_noise = 16;
 
 // Luminance of irradiance, or of sums of it. Linear in light: draws of a sum are the sums of its

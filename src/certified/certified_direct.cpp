@@ -21,8 +21,9 @@ constexpr double rough_error = 0.3;
 }  // namespace
 
 CertifiedSettings certified_settings(double error, size_t lights, int viewing_rays) {
-  // Half in shadow, n Owen-Sobol rays err by about 1/2 n^-3/4, so n = (1 / 4e²)^(2/3). Errors of
-  // equal, independent sources average out. Powers of two are stratified best.
+  // At a point half in shadow, n Owen-Sobol rays have an error of about 1/2 n^-3/4, so
+  // n = (1 / 4e²)^(2/3). Errors of equal, independent sources average out. Powers of two are
+  // stratified best.
   const auto rays_for = [](double e) {
     const double n = std::clamp(std::pow(0.25 / (e * e), 2.0 / 3), 16.0, 256.0);
     return int(std::bit_floor(unsigned(n)));

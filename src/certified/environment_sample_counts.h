@@ -12,8 +12,8 @@
 
 namespace troffer {
 
-// Returns the light at hits with which their pixels show the luminance `typical`, luminance × sr.
-// Light that is weaker may have the error of this one, as in allowed_error.h.
+// Returns the mean light at the hits, in luminance × sr, for which their pixels show the luminance
+// `typical`. Weaker light is allowed the same absolute error as this (allowed_error.h).
 inline double typical_light(const WaitingHits& hits, std::span<const uint32_t> members,
                             double typical) {
   if (!(typical > 0)) return 0;

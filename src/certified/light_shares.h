@@ -16,8 +16,8 @@ namespace troffer {
 class LightShares {
  public:
   // Sets the shares of groups[chosen[k]] at each of `members`. estimates[k] > 0: the value of
-  // LightGroups::estimate() for the cluster. All members share the estimates alone if there are
-  // many lights or pieces.
+  // LightGroups::estimate() for the cluster. If there are many lights or pieces, all members get
+  // the same shares, proportional to the estimates.
   void set(const LightGroups& groups, std::span<const CertifiedSource> sources,
            const WaitingHits& hits, std::span<const uint32_t> members,
            std::span<const uint32_t> chosen, std::span<const float> estimates);

@@ -40,8 +40,8 @@ struct GatherNumbers {
   uint64_t stream;
 };
 
-// Rays of a pixel's first samples continue one sequence, and so do those with an effort divisor
-// above 1.
+// Returns the gather rays of a hit. The first samples of a pixel continue one Sobol sequence from
+// sample to sample; so do samples with an effort divisor above 1, in a stream of their own.
 GatherNumbers numbers_of_hit(float wanted, const Walk& at, uint32_t effort_divisor) {
   const bool is_first = at.sample < first_samples;
   if (is_first) effort_divisor = 1;
@@ -58,7 +58,7 @@ struct CellsIndirect::Scratch final : IndirectLightScratch {
   CellsScratch cells;
   // Per hit whose rays are in cells.walks: index of its viewing ray, and end of its rays.
   std::vector<uint32_t> indices, ends;
-  // Per ray: factor from the irradiance that it brings to light of the viewing ray.
+  // Per gather ray: factor from its irradiance to the radiance of the viewing ray.
   std::vector<Rgb> weights;
   SensorDistributions aims;
   GatherRecords::CachedDistribution aim;

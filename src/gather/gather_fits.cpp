@@ -30,8 +30,8 @@ constexpr double most_offset = 0.5;
 // them.
 constexpr int few_along = 4, many_along = 8;
 
-// Returns the half of the pixels that this one belongs to (Thue-Morse sequence along both axes).
-// Every 3 × 3 pixels, at any stride, have about as many of either half.
+// Returns the half (0 or 1) that a pixel belongs to, by the Thue-Morse sequence along both axes. A
+// block of 3 × 3 pixels at any stride contains about as many pixels of one half as of the other.
 int half_of(int x, int y) {
   uint32_t v = uint32_t(x) ^ uint32_t(y);  // reduced to the parity of its bits
   for (const int shift : {16, 8, 4, 2, 1}) v ^= v >> shift;
@@ -194,7 +194,7 @@ uint32_t GatherFits::further_rays(int x, int y, uint32_t r, Part part) const {
   const FittedLight light = solved(fit(x, y, r, part, std::min(radius, most_pixels * at.spacing),
                                        few_along, are_others ? Asked::other_half : Asked::all),
                                    s);
-  // In the end both halves share their rays.
+  // The final fit uses the records of both halves, twice as many as this one.
   const double sharers = are_others ? 2 : 1;
   const double wanted =
       light.spread / std::max(sharers * light.neighbours, 1.0) /
@@ -242,7 +242,7 @@ float GatherFits::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) 
   return distance;
 }
 
-// Returns the rays of a pixel that gathers for itself.
+// Returns the number of gather rays that a pixel needs if it shares none with its neighbours.
 float GatherFits::own_rays(int x, int y, uint32_t r, Part part) const {
   const GatherRecord& at = records_.all()[r];
   return unit * around(x, y, r, part).variance /

@@ -14,14 +14,15 @@ namespace troffer {
 
 namespace {
 
-// Note of walks that come from a matte surface: they count neither direct light nor light of mirror
-// images.
+// Note of walks that come from a matte surface. They add neither direct light nor light from mirror
+// images, which is computed elsewhere.
 constexpr uint32_t note_from_matte = MirrorImages::note_from_matte;
 
-// Thresholds of Russian roulette at gloss that a ray meets. Below them a light is sampled, or the
-// ray continued, with a probability in proportion to the light carried. The gloss of varnish or
-// plastics brings a twentieth of what the surface does, and may be noisier. Few rays of narrow
-// gloss bring most of its light, so it has lower thresholds. Measured: docs/log/cells.md.
+// Thresholds of Russian roulette where a ray meets gloss. If the light carried is below them, a
+// light is sampled, or the ray continued, with a probability in proportion to it. The gloss of
+// varnish or plastics contributes about a twentieth of the surface's light, so its noise matters
+// less. The light of narrow gloss arrives by few rays, so its thresholds are lower. Measured:
+// docs/log/cells.md.
 constexpr float least_of_light = 0.25f, least_of_ray = 0.5f, least_of_narrow_ray = 0.1f;
 constexpr float least_by_width = 8;  // threshold over alpha squared
 

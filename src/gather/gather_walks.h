@@ -86,8 +86,8 @@ class GatherWalks {
   // Returns a scattering function with the coat at a place (for coat_share()); without a coat, one
   // that lets everything through.
   Bsdf coat_at(const CellHit& hit) const;
-  // Returns a white surface with the coat at a place, seen from straight above. Of reflectance pi,
-  // it shows the irradiance there.
+  // Returns a white diffuse surface under the coat at a place, seen along its normal. With
+  // reflectance π, its radiance equals the irradiance there.
   Bsdf white_at(const CellHit& hit, float reflectance) const;
   // Samples direct light at arrivals, once each and once per mirror image. Adds irradiance ×
   // throughput / π to s.light.

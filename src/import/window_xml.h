@@ -14,9 +14,9 @@ namespace troffer {
 
 // Returns the visible matrices of a file: Klems bases, other bases that the file defines, and
 // tensor trees, which are reduced to the full Klems basis with a warning. The file's front is the
-// outside, which is the back of a surface [2]. A direction of transmission that is missing or zero
-// is the reverse of the other one. Throws InputError, with line and column in `text`, for malformed
-// files and for matrices that scatter more light than arrives.
+// outside, which is the back of a surface [2]. If the transmission of one direction is missing or
+// zero, it is the reverse of the other direction's. Throws InputError, with line and column in
+// `text`, for malformed files and for matrices that scatter more light than arrives.
 AngularBsdf read_window_xml(const std::string& file, const std::string& text, WarningLog& warnings);
 
 }  // namespace troffer

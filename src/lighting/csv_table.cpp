@@ -200,7 +200,11 @@ double CsvReader::number(const CsvRow& row, size_t field, std::string_view name,
   const char* const last = plain.data() + plain.size();
   double value = 0;
   const auto [stop, error] = std::from_chars(plain.data(), last, value);
-  if (error != std::errc() || stop != last || !(std::abs(value) <= most))
+  const bool is_number = stop == last && error != std::errc::invalid_argument && !std::isnan(value);
+  if (is_number && (error == std::errc::result_out_of_range || std::abs(value) > most))
+    fail(row, field,
+         fmt::format("column '{}': '{}' is out of range", name, row.fields[field].substr(0, 40)));
+  if (!is_number)
     fail(row, field,
          fmt::format("column '{}': '{}' is not a number{}", name, row.fields[field].substr(0, 40),
                      has_comma && separator_ == ','

@@ -111,7 +111,7 @@ void check_pair(Scene& scene, const Corners& a, const Corners& b) {
 }
 
 // Warns of blinds, reveals and ground beyond all portals: they stay dark and reflect nothing into
-// the room. Behind blinds that is half of the light.
+// the room, which can be half of the light where there are blinds.
 void warn_of_what_is_beyond(Scene& scene, const std::vector<Corners>& portals) {
   const auto is_beyond = [&](const Vec3& p) {
     return std::all_of(portals.begin(), portals.end(), [&](const Corners& c) {

@@ -150,8 +150,8 @@ Looks look_around(const Scene& scene, const Tracer& tracer, const RadiosityMesh&
   Looks looks;
   looks.rays.resize(n);
   looks.leaving.resize(n);
-  // Node for all rays that leave the scene. In open scenes a few rays can miss the light that
-  // reaches a side.
+  // One node stands for the outside: sides that rays leave through are connected with each other.
+  // In open scenes the few rays of a side may otherwise miss the path by which light reaches it.
   const auto lit = uint32_t(n), outside = uint32_t(n + 1);
   std::vector<uint8_t> is_source(n);
   for (uint32_t f = 0; f < mesh.fragments.size(); ++f)

@@ -16,9 +16,10 @@ namespace {
 constexpr int paths_of_sample = 4;
 constexpr double most_times_audit = 16;
 constexpr double much_more = 2;  // factor by which one error must exceed another
-// A second look uses this many times as many paths. It follows if the first finds a difference that
-// chance gives in one list of ten. Few paths may all miss a bright caustic that the cells contain,
-// and then underestimate their own error.
+// If the first look finds a difference that chance alone would give in one list of ten (this
+// quantile of the normal distribution), a second look follows with `times_in_doubt` times as many
+// paths. Few paths may all miss a bright caustic that the cells contain, and then underestimate
+// their own error.
 constexpr double quantile_of_doubt = 1.2816;
 constexpr int times_in_doubt = 4;
 

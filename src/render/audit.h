@@ -44,7 +44,7 @@ std::optional<AuditFinding> audit(const Integrator& paths,
                                   const std::vector<PointLight>& by_cells, const PointPlan& plan,
                                   const PointsRun& run);
 
-// Returns the plan for measuring all points by paths, where those of `plan` are not good enough.
+// Returns the plan for measuring all points by paths, after an audit has rejected the cells.
 PointPlan plan_by_paths(PointPlan plan);
 
 // Adds a slight bias to the standard errors of points, which keep their values.

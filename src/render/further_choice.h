@@ -50,11 +50,12 @@ struct TestPixel {
   double rays = 4;       // first rays
 };
 
-// Returns the way of least cost for a given error. Rays like the first ones take `cost_of_first`
-// each and vary as planned, or more if their tests show it; no other way is taken to vary less.
-// Ways whose test rays bring less than half the light that the first rays have seen are out: the
-// rest may come in rays so rare and bright that no test shows their variance, such as samples of a
-// lamp behind a pinhole. most_even: as in samples_for() (sample_spread.h).
+// Returns the way of least cost for a given error. A ray like the first ones costs `cost_of_first`;
+// its variance is the planned one, or the tested one if that is larger. All other ways are assumed
+// to have at least this variance. A way whose test rays bring less than half the light that the
+// first rays have seen is excluded. Its missing light may arrive by rays so rare and bright that no
+// test shows their variance, such as samples of a lamp behind a pinhole. most_even: as in
+// samples_for() (sample_spread.h).
 FurtherChoice choose_further_way(std::span<const TestPixel> pixels, double cost_of_first,
                                  std::span<const TestedWay> tested, double most_even);
 

@@ -99,8 +99,8 @@ class PlannedList {
   double scale_for(double allowed) const {
     return least_scale([&](double scale) { return variance(scale) <= allowed; });
   }
-  // Returns the scale at which this many samples are taken, but no larger than where the error
-  // reaches that which all samples share.
+  // Returns the scale at which the points take `samples_in_all` samples together. It is smaller if
+  // the variance already falls to the part that more samples cannot reduce.
   double scale_by(double samples_in_all) const {
     double shared = 0;
     for (const PlannedPoint& p : points_) shared += std::max(p.shared_variance, nearly_most(p));

@@ -28,7 +28,7 @@ std::vector<double> samples_at_will(const std::vector<PointLight>& found,
   const std::vector<SamplesWanted> wanted = samples_wanted(found, plans);
   std::vector<double> samples;
   for (size_t i = 0; i < found.size(); ++i)
-    // None of the few samples found light, so perhaps hardly any sample finds it.
+    // If none of the few samples found light, no number of samples can be promised to be enough.
     samples.push_back(found[i].all.illuminance_lx > 0 ? wanted[i].all
                                                       : std::numeric_limits<double>::infinity());
   return samples;

@@ -46,7 +46,8 @@ class Preview {
   // is old enough. Any thread may call it, as long as no other thread changes this tile.
   void update(const Film& film, const PixelRect& tile);
 
-  // Returns the picture shown last or next; empty before the first look(). Not during update().
+  // Returns the latest picture, whether it has been shown or not; empty before the first look().
+  // Must not be called during update().
   const Image& picture() const { return image_; }
 
  private:

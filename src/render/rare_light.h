@@ -18,8 +18,8 @@ namespace troffer {
 // large values (high kurtosis). The new value tends to the usual error in the list for as many
 // samples, absolute or relative to the point's light, whichever is less. Single points and lists
 // with normally distributed sets keep their errors.
-// Errors of Sobol sets fall faster than their size grows, so points with few samples tend to raise
-// others too much.
+// Limit: the estimate assumes errors in proportion to 1/√n, but those of Sobol points fall faster.
+// Points with few samples therefore tend to raise the errors of others too much.
 void raise_errors_for_rare_light(std::vector<PointLight>& points, const std::vector<size_t>& which);
 
 }  // namespace troffer

@@ -214,8 +214,8 @@ bool TileTracer::further_rays(const PixelRect& tile, TileWork& w) {
     w.pixels.clear();
   };
   std::vector<Pixel2> pixels = pixels_in_order(tile);
-  // The plan of a pixel comes from few rays around it, and that of a tile from few pixels: both
-  // count.
+  // Two uncertain plans are averaged: the pixel's own, from few rays around it, and the tile's,
+  // from few test pixels.
   const auto wanted = [&](const Pixel2& p) {
     constexpr double most = 1 << 16;
     const double first = further_.first_spp(), own = further_.at(p.x, p.y).samples - first,

@@ -39,11 +39,11 @@ struct FoundSurfaces {
 FoundSurfaces find_surfaces(const PreparedScene& scene, const Vec3d& up, const std::string& profile,
                             double work_plane);
 
-// Returns the requested surfaces. A node that is a slab yields its floors within their rooms. Any
-// other node yields its upward faces of at least a tenth of the largest one's area, or the faces of
-// its own direction if it is flat. `profile`: default for requests without one. Throws UsageError
-// for unknown nodes, for nodes that are neither flat nor have upward faces, and for rectangles
-// without area.
+// Returns the requested surfaces. A node that is a slab yields its floors, bounded by the walls on
+// it. A flat node yields its faces, whatever their direction. Any other node yields its upward
+// faces of at least a tenth of the largest one's area. `profile`: default for requests without one.
+// Throws UsageError for unknown nodes, for nodes that are neither flat nor have upward faces, and
+// for rectangles without area.
 FoundSurfaces asked_surfaces(const PreparedScene& scene, const Vec3d& up,
                              const std::vector<SurfaceRequest>& requests,
                              const std::string& profile);

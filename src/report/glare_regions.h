@@ -22,10 +22,10 @@ struct FisheyeGrid {
 
 using GlareRegion = std::vector<size_t>;  // pixels, y × side + x, ascending
 
-// Returns the regions of the pixels above `threshold`. Two pixels are in one region if a chain of
-// such pixels joins them whose links are at most `link_rad` long. The pixels from `peak` on of each
-// region are regions of their own, joined in the same way; peak 0: none are. Ordered by their first
-// pixels, rests of regions before peaks.
+// Returns the regions of the pixels above `threshold`. Two pixels belong to one region if a chain
+// of such pixels joins them, each at most `link_rad` from the next. If peak > 0, the pixels of a
+// region at or above `peak` are split off into regions of their own, joined in the same way.
+// Regions are in the order of their first pixels; those that were split off follow what remains.
 std::vector<GlareRegion> glare_regions(const FisheyeGrid& grid, const Image& picture,
                                        double threshold, double peak, double link_rad);
 

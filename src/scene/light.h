@@ -106,7 +106,7 @@ inline bool is_delta(LightKind k) {
   return k == LightKind::point || k == LightKind::spot || k == LightKind::distant;
 }
 
-// True if the light emits anything. A sky of which only the sun is left still has a ground.
+// True if the light emits anything. A sky without diffuse light can still have a lit ground.
 inline bool emits(const Light& e) {
   return !e.radiance.is_black() || (e.kind == LightKind::sky && !e.sky.ground.is_black());
 }

@@ -26,8 +26,9 @@ struct LightWeb {
   std::vector<float> vertical_angles_rad;    // from the pole, ascending in [0, pi], at least 2
   std::vector<float> horizontal_angles_rad;  // ascending over at most 2 pi, at least 2
   std::vector<float> intensities;            // [turn][height]; W/sr or cd; 0 beyond the angles
-  // Luminous opening, which surfaces with this web are parts of, in the luminaire's axes: outward
-  // face normals times area (m²), or the cross-section of a sphere (m²). Both empty for a point.
+  // Luminous opening in the luminaire's axes: the outward normals of its faces times their areas
+  // (m²), or the cross-section of a sphere (m²). All surfaces with this web together form it. No
+  // faces and cross-section 0: a point.
   std::vector<Vec3> faces;
   float cross_section = 0;
 };

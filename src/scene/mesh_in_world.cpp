@@ -17,9 +17,9 @@ double largest(const Vec3d& v) {
   return std::max({v.x, v.y, v.z});
 }
 
-// Growth of rounding errors of coordinates on the way to the mesh and back: the row sum norm of
-// M| |M^-1|. It is 1 if M scales along the axes, at most 3 for rotations, and infinite or NaN if M
-// is singular.
+// Growth of rounding errors of coordinates on the way to the mesh and back: the row sum norm
+// of |M| |M^-1|. It is 1 if M scales along the axes, at most 3 for rotations, and infinite or NaN
+// if M is singular.
 double growth_of_rounding(const Affine& m) {
   const std::array<Vec3d, 3> there = abs_columns(inverse(m)), back = abs_columns(m);
   const Vec3d sums = there[0] + there[1] + there[2];

@@ -42,8 +42,8 @@ class FoundFacets {
     bool is_partly_open() const { return is_known() && open_share > 0.05; }
   };
   DirectRayPlan dense;
-  // Tells if anything that rises over the source's plane comes within rounding distance of the
-  // source. If so, rays must be traced to their ends.
+  // Whether an object on the front side of the source's plane comes within rounding distance of
+  // the source. If so, shadow rays must not stop short of the source.
   enum class Rim : uint8_t { unknown, none, some };
   Rim rim = Rim::unknown;
 

@@ -85,10 +85,11 @@ struct RadianceBatch {
   // `indirect`. Draws of several samples are added with their signs, since samples that read the
   // same cells err alike. Empty if the method does not estimate it.
   std::vector<float> drawn_error;
-  // Luminance of `indirect` light with an error estimate, minus that of `direct` light without one
-  // (emission hit by a lobe's own ray). So luminance(indirect) - luminance_with_error is the
-  // luminance of all light without an error estimate. The film estimates the error of that light
-  // from the spread of samples. Empty if the method estimates no errors.
+  // Defined so that luminance(indirect) - luminance_with_error is the luminance of all light
+  // without an error estimate; the film takes the error of that light from the spread of samples.
+  // It is the luminance of `indirect` light that has an estimate, minus that of `direct` light that
+  // has none (emission that a ray of a glossy lobe has hit). Empty if the method estimates no
+  // errors.
   std::vector<float> luminance_with_error;
   // Properties of the first surface hit; zero if nothing is hit.
   std::vector<Rgb> albedo;

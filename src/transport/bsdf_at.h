@@ -20,8 +20,9 @@ inline Bsdf bsdf_at(const PreparedScene& scene, const Vertex& v) {
   return bsdf_at(scene, v.surface.material, v.surface.uv, v.is_front);
 }
 
-// Same as bsdf_at(), but without copying, and also split into diffuse and specular part. Must not
-// outlive the scene; references that it returns must not outlive it.
+// The BSDF at a vertex, whole or split into its diffuse and specular part. Unlike bsdf_at() it does
+// not copy BSDFs of uniform materials. It must not outlive the scene, and references that it
+// returns must not outlive it.
 class ScatteringAt {
  public:
   ScatteringAt(const PreparedScene& scene, const Vertex& v)
@@ -34,8 +35,9 @@ class ScatteringAt {
   ScatteringAt& operator=(const ScatteringAt&) = delete;
 
   const Bsdf& whole() const { return even_ != nullptr ? even_->whole : *made_; }
-  // The BSDF for take_far_side(), which modifies it. Call before in_parts(). Only for surfaces with
-  // two sides: UniformBsdfs never holds them.
+  // Returns the BSDF for take_far_side(), which modifies it. Must be called before in_parts(), and
+  // only for surfaces that scatter to both sides. UniformBsdfs never holds such surfaces, so the
+  // BSDF belongs to this object.
   Bsdf& of_two_sides() { return made_.value(); }
   const SurfaceScattering& in_parts() {
     if (even_ != nullptr) return *even_;

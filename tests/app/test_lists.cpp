@@ -124,6 +124,8 @@ TEST_CASE("errors in a list of points name line and column") {
             "1:1: the header x,y,z,nx,ny,nz has column 'x' twice"},
            {"x,y,z,nx,ny,nz\n1,5,2,0,0,0\n", "2:7: the normal"},
            {"x,y,z,nx,ny,nz\n\"1,5\",2,0,0,0,1\n", "2:1: column 'x': '1,5' is not a number (with"},
+           {"x,y,z,nx,ny,nz\n1e300,2,0,0,0,1\n", "2:1: column 'x': '1e300' is out of range"},
+           {"x,y,z,nx,ny,nz\n1,nan,0,0,0,1\n", "2:3: column 'y': 'nan' is not a number"},
            {"x;y;z;nx;ny;nz\n1;2;0;0;0;eins\n", "2:11: column 'nz': 'eins'"},
            {"x,y,z,nx,ny,nz\n1,2,0,0,0,1\n\"1,2,0,0,0,1\n", "3:1: a quote is not closed"},
            {"x,y,z,nx,ny,nz\n\"1\n\",2,0,0,0,1\nq,2,0,0,0,1\n", "2:1: column 'x'"},

@@ -80,7 +80,10 @@ TEST_CASE("mistyped commands and options get a suggestion") {
        {{"render", "-o", "a.exr"}, "render needs SCENE (troffer help render lists its options)"},
        {{"measure", "a.gltf"}, "measure: give --points FILE.csv or --grid NODE"},
        {{"compare", "a.exr"}, "compare needs REFERENCE (troffer help compare lists its options)"},
-       {render({"--spp"}), "--spp needs a value: --spp N"}},
+       {render({"--spp"}), "--spp needs a value: --spp N"},
+       {render({"--spp", "4", "--spp"}), "--spp needs a value: --spp N"},
+       {render({"--size", "8x8", "--size", "9x9"}),
+        "--size is given more than once: choose one value"}},
       2);
 }
 

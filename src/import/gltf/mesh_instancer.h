@@ -36,13 +36,14 @@ class MeshInstancer {
     auto operator<=>(const Key&) const = default;
   };
 
-  // Adds an instance, or returns false if the mesh must or should be copied. Meshes of few
-  // triangles are copied, and the first meshes while all copies together are small. Glass that may
-  // be thin is copied too, because thin_glass.h works in world space. So are meshes under a nearly
-  // singular transform, or one that takes a triangle's area away.
-  // `triangles` is the file's count. `world_from_mesh` counts from Scene::origin. `make` returns
-  // the mesh in its own space: cleaned, with its material, its front as without the transform. It
-  // is called at most once per stored mesh.
+  // Adds an instance, or returns false if the mesh must or should be copied. The first meshes are
+  // copied while all copies together are small. The following are always copied:
+  // - meshes of few triangles;
+  // - glass that may be thin, because thin_glass.h works in world space;
+  // - meshes under a nearly singular transform, or one that reduces a triangle's area to 0.
+  // `triangles`: the file's count. `world_from_mesh`: relative to Scene::origin. `make`: returns
+  // the cleaned mesh with its material in its own space, with the front that it has there. It is
+  // called at most once per stored mesh.
   bool place(const Key& key, size_t triangles, const Affine& world_from_mesh,
              const std::string& name, const std::function<Mesh()>& make);
 

@@ -99,7 +99,7 @@ HbjsonParts::DynamicState HbjsonParts::state_of(const JsonNode& radiance, bool i
 
 void HbjsonParts::check_states() const {
   for (const auto& [name, state] : states_.shown) {
-    const auto is_it = [&](const DynamicGroup& g) { return g.name == name; };
+    const auto is_it = [&group = name](const DynamicGroup& g) { return g.name == group; };
     const auto known_group =
         std::find_if(scene_.dynamic_groups.begin(), scene_.dynamic_groups.end(), is_it);
     if (known_group != scene_.dynamic_groups.end()) {
