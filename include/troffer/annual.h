@@ -97,13 +97,9 @@ struct AnnualDaylight {
   }
 };
 
-/// Computes a year of daylight as `troffer annual` does. All light sources of the scene are off.
-/// Memory: 12 bytes per sensor and hour.
-/// @param scene   closed walls, with glass in its windows or none
-/// @param weather an .epw file, or Radiance's .wea
-/// @param grids   sensors; empty: the grids of a Honeybee model
-/// @param options settings, as of the program
-/// @param progress may stop the work
+/// Computes a year of daylight as `troffer annual` does. `weather` is an .epw file, or Radiance's
+/// .wea. Without grids, the sensors are those of a Honeybee model. All light sources of the scene
+/// are off. Memory: 12 bytes per sensor and hour.
 /// @throws InputError for files that cannot be used
 /// @throws UsageError for invalid points and options, and for window groups of a Honeybee model
 ///   whose surfaces or materials were changed after loading
