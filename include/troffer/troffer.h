@@ -1,7 +1,8 @@
 /// @file
-/// Includes the whole public interface: scenes, pictures and measurements.
+/// Includes the whole public interface: scenes, pictures, measurements and years of daylight.
 #pragma once
 
+#include "troffer/annual.h"
 #include "troffer/error.h"
 #include "troffer/image.h"
 #include "troffer/light.h"
@@ -13,6 +14,7 @@
 
 /// Physically based rendering of rooms.
 namespace troffer {
-/// The public interface: load or build a Scene, then call render() and measure().
+/// The public interface: load or build a Scene, then call render(), measure()
+/// and annual().
 namespace api {}
 }  // namespace troffer

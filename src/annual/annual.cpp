@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "annual/blinds.h"
 #include "annual/eye_glare.h"
@@ -29,6 +30,10 @@ TransportRays rays_of(const AnnualOptions& options, size_t sensors) {
                                     least_rays, most_rays);
   rays.of_sensor = int(n);
   return rays;
+}
+
+ReflectedOptions reflected_options(const AnnualOptions& options, size_t sensors) {
+  return {rays_of(options, sensors), options.seed, options.threads};
 }
 
 // Squares of coefficients and of their errors, for AnnualResult::relative_error_reflected.
@@ -63,11 +68,9 @@ class AnnualCalculation {
     ErrorSums sums;
     for (size_t k = 0; k < states_.size(); ++k) {
       LitState& state = states_[k];
-      state.reflected = reflected_light(
-          *state.scene, state.hits, request_.year, request_.compass,
-          {rays_of(options_, state.hits.size()), options_.seed, options_.threads},
-          [&](double f) { tell(share_of_reflected * (double(k) + f) / double(states_.size())); },
-          stop_);
+      state.reflected = reflect(k, [&](double f) {
+        tell(share_of_reflected * (double(k) + f) / double(states_.size()));
+      });
       if (state.reflected.size() < size_t(replicate_count)) return false;
       for (const ReflectedReplicate& r : state.reflected) {
         result_.cells = std::max(result_.cells, r.cells);
@@ -78,6 +81,15 @@ class AnnualCalculation {
                           sums);
     }
     result_.relative_error_reflected = sums.squares > 0 ? std::sqrt(sums.errors / sums.squares) : 0;
+    return true;
+  }
+
+  // Computes what is AnnualRequest::store's own share.
+  bool reflect_share() {
+    for (size_t k = 0; k < states_.size(); ++k)
+      if (reflect(k, [&](double f) { tell((double(k) + f) / double(states_.size())); }).size() <
+          size_t(replicate_count))
+        return false;
     return true;
   }
 
@@ -131,6 +143,13 @@ class AnnualCalculation {
   void tell(double fraction) const {
     if (progress_) progress_(fraction);
   }
+  std::vector<ReflectedReplicate> reflect(size_t k, const ProgressCallback& progress) const {
+    ReflectedOptions o = reflected_options(options_, request_.points.size());
+    std::optional<KeptReplicates> keeper;
+    if (request_.store != nullptr) o.keeper = &keeper.emplace(*request_.store, k);
+    return reflected_light(*states_[k].scene, states_[k].hits, request_.year, request_.compass, o,
+                           progress, stop_);
+  }
   YearOfLight light_of(const LitState& state) const {
     return {*state.scene,     request_.year,   result_.skies,
             request_.compass, state.reflected, options_.seed};
@@ -171,6 +190,15 @@ class AnnualCalculation {
   LitStates states_;
 };
 
+AnnualResult unfilled_result(const AnnualRequest& request, const AnnualOptions& options) {
+  YearSkies skies = make_year_skies(request.year, options.subdivision, options.ground_reflectance,
+                                    options.threads);
+  YearTimes times = make_year_times(request.year, skies, options.occupancy);
+  const size_t hours = skies.hours();
+  return {std::move(skies), std::move(times), StateSchedule(request.paths.size(), hours),
+          FigureTable(request.points.size(), size_t(replicate_count))};
+}
+
 }  // namespace
 
 bool has_several_states(const std::vector<LightPath>& paths) {
@@ -181,19 +209,25 @@ bool has_several_states(const std::vector<LightPath>& paths) {
 AnnualResult compute_annual(const AnnualRequest& request, const AnnualOptions& options,
                             const TakeHours& take, const ProgressCallback& progress,
                             const StopFlag& stop) {
-  YearSkies skies = make_year_skies(request.year, options.subdivision, options.ground_reflectance,
-                                    options.threads);
-  YearTimes times = make_year_times(request.year, skies, options.occupancy);
-  const size_t hours = skies.hours();
-  AnnualResult result{std::move(skies), std::move(times),
-                      StateSchedule(request.paths.size(), hours),
-                      FigureTable(request.points.size(), size_t(replicate_count))};
+  AnnualResult result = unfilled_result(request, options);
   AnnualCalculation calculation(request, options, progress, stop, result);
   // A table of states is read before any long work, so that mistakes show at once.
   const bool has_table = options.blinds != "lm-83";
   result.is_complete = (!has_table || calculation.operate_blinds()) && calculation.reflect() &&
                        (has_table || calculation.operate_blinds()) && calculation.take_hours(take);
   return result;
+}
+
+bool compute_reflected_share(const AnnualRequest& request, const AnnualOptions& options,
+                             const ProgressCallback& progress, const StopFlag& stop) {
+  AnnualResult unused = unfilled_result(request, options);
+  return AnnualCalculation(request, options, progress, stop, unused).reflect_share();
+}
+
+PictureKey key_of_store(const std::string& program, const AnnualRequest& request,
+                        const AnnualOptions& options) {
+  return reflected_key(program, request.paths, request.points, request.year, request.compass,
+                       reflected_options(options, request.points.size()));
 }
 
 }  // namespace troffer

@@ -9,6 +9,7 @@
 
 #include "annual/light_paths.h"
 #include "annual/reflected_light.h"
+#include "annual/reflected_store.h"
 #include "annual/year_figures.h"
 #include "render/measuring_places.h"
 
@@ -35,6 +36,7 @@ struct AnnualRequest {
   const WeatherYear& year;
   const Compass& compass;
   size_t eyes = 0;  // number of eyes: the last points, whose normals are lines of sight
+  ReflectedStore* store = nullptr;  // of finished reflected light; may be null
 };
 
 // Illuminance by way of one path in one state, lx per hour.
@@ -73,6 +75,15 @@ struct AnnualResult {
 AnnualResult compute_annual(const AnnualRequest& request, const AnnualOptions& options,
                             const TakeHours& take, const ProgressCallback& progress,
                             const StopFlag& stop);
+
+// Computes the own items of AnnualRequest::store (reflected_store.h) and keeps them there. Returns
+// false after a stop.
+bool compute_reflected_share(const AnnualRequest& request, const AnnualOptions& options,
+                             const ProgressCallback& progress, const StopFlag& stop);
+
+// Returns the key of AnnualRequest::store.
+PictureKey key_of_store(const std::string& program, const AnnualRequest& request,
+                        const AnnualOptions& options);
 
 // True if blinds can move: a path has several states.
 bool has_several_states(const std::vector<LightPath>& paths);

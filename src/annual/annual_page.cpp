@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "annual/annual_plots.h"
+#include "annual/annual_summary.h"
 #include "annual/extras_text.h"
 #include "report/html_text.h"
 #include "report/page_style.h"
@@ -15,30 +16,11 @@ namespace troffer {
 
 namespace {
 
-std::string figure_text(const YearFigure& f, const std::string& unit) {
-  // A count of sensors may agree in all replicates; its error is then below one sensor.
-  const std::string value =
-      f.error > 0 ? with_error(f.value, f.error) : fmt::format("{:.4g}", f.value);
-  return html_text(value + " " + unit);
-}
-
-std::string verdict_text(YearVerdict v) {
-  switch (v) {
-    case YearVerdict::met:
-      return "<span class=\"pass\">met</span>";
-    case YearVerdict::not_met:
-      return "<span class=\"fail\">not met</span>";
-    case YearVerdict::undecided:
-      return "<span class=\"open\">undecided</span>";
-  }
-  return "";
-}
-
 std::string figures_table_of(const AnnualGrid& g) {
   HtmlTable table({"Figure", "Value"});
   for (const GridFigure& f : g.result.figures)
-    table.add(
-        {html_text(f.title), "<span class=\"n\">" + figure_text(f.figure, f.unit) + "</span>"});
+    table.add({html_text(f.title),
+               "<span class=\"n\">" + year_figure_text(f.figure, f.unit) + "</span>"});
   return table.html();
 }
 
@@ -46,8 +28,8 @@ std::string requirements_table_of(const AnnualGrid& g) {
   HtmlTable table({"Requirement", "Needed", "Found", "Verdict"});
   for (const GridRequirement& r : g.result.requirements)
     table.add({html_text(r.title), "<span class=\"ask\">" + html_text(r.need) + "</span>",
-               "<span class=\"n\">" + figure_text(r.figure, "%") + "</span>",
-               verdict_text(r.verdict)});
+               "<span class=\"n\">" + year_figure_text(r.figure, "%") + "</span>",
+               year_verdict_mark(r.verdict)});
   return table.html();
 }
 
@@ -144,8 +126,9 @@ std::string settings_section(const AnnualReport& r) {
   add("Cells and light paths",
       fmt::format("{} cells, {} links, {} sources, {} replicates", result.cells, result.links,
                   result.sources, replicate_count));
-  add("Standard error of an hour",
-      fmt::format("{:.2g} % of the illuminance, root mean square", 100 * result.relative_error));
+  add("Standard error of one sensor in one hour",
+      fmt::format("{:.2g} % of the illuminance, root mean square; most of it at edges of sunlight",
+                  100 * result.relative_error));
   add("Program", "troffer " + r.version);
   add("Command", r.command);
   return "<h2>Settings</h2>" + table.html();
@@ -165,6 +148,7 @@ std::string annual_page(const AnnualReport& r) {
     for (const std::string& w : r.warnings) h += "<li>" + html_text(w) + "</li>";
     h += "</ul>";
   }
+  h += summary_section(r);
   for (const AnnualGrid& g : r.grids) h += grid_section(r, g);
   h += groups_section(r);
   h += extras_sections(r);

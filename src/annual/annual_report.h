@@ -39,6 +39,9 @@ struct AnnualReport {
 // Occupied hours that a path spends in each of its states.
 std::vector<double> hours_in_states(const AnnualReport& report, size_t path);
 
+// "met", "not met" or "undecided".
+const char* verdict_name(YearVerdict verdict);
+
 // Name and unit of a sensor's figure, as columns of tables have them: "da", "%".
 struct FigureColumn {
   SensorFigure figure;

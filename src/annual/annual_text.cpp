@@ -33,18 +33,6 @@ constexpr std::array columns{
 };
 static_assert(columns.size() == sensor_figures);
 
-const char* name_of(YearVerdict v) {
-  switch (v) {
-    case YearVerdict::met:
-      return "met";
-    case YearVerdict::not_met:
-      return "not met";
-    case YearVerdict::undecided:
-      return "undecided";
-  }
-  return "";
-}
-
 // Names in scenes may be invalid UTF-8, which JSON cannot hold.
 std::string dump(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -63,11 +51,23 @@ Json grid_json(const AnnualGrid& g) {
                                     {"need", r.need},
                                     {"value", r.figure.value},
                                     {"standard_error", r.figure.error},
-                                    {"verdict", name_of(r.verdict)}});
+                                    {"verdict", verdict_name(r.verdict)}});
   return grid;
 }
 
 }  // namespace
+
+const char* verdict_name(YearVerdict v) {
+  switch (v) {
+    case YearVerdict::met:
+      return "met";
+    case YearVerdict::not_met:
+      return "not met";
+    case YearVerdict::undecided:
+      return "undecided";
+  }
+  return "";
+}
 
 std::span<const FigureColumn> figure_columns() {
   return columns;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -41,9 +42,32 @@ std::string hour_text(double hour) {
 
 }  // namespace
 
+// One array in all its formats, written row by row.
+class ArrayFiles {
+ public:
+  // stem: path without the ending.
+  ArrayFiles(const std::string& stem, size_t rows, size_t columns, ArrayFormat format)
+      : npy_(std::make_unique<AtomicFile>(stem + ".npy")) {
+    npy_->write(npy_header(rows, columns));
+    if (format == ArrayFormat::npy_and_ill) ill_ = std::make_unique<AtomicFile>(stem + ".ill");
+  }
+  void add_row(const std::vector<float>& values) {
+    npy_->write(std::string_view(reinterpret_cast<const char*>(values.data()),
+                                 values.size() * sizeof(float)));
+    if (ill_) ill_->write(ill_row(values));
+  }
+  void commit() {
+    npy_->commit();
+    if (ill_) ill_->commit();
+  }
+
+ private:
+  std::unique_ptr<AtomicFile> npy_, ill_;
+};
+
 // Files of one path and state.
 struct StateFiles {
-  std::unique_ptr<AtomicFile> total, direct;
+  ArrayFiles total, direct;
 };
 
 struct HoneybeeFolder::PathNames {
@@ -56,7 +80,7 @@ struct HoneybeeFolder::GridFiles {
   size_t sensors = 0;
   std::vector<std::vector<StateFiles>> files;  // path by path
   std::vector<bool> has_light;                 // per path
-  std::unique_ptr<AtomicFile> error;
+  std::unique_ptr<ArrayFiles> error;
 };
 
 std::string npy_header(size_t rows, size_t columns) {
@@ -71,9 +95,18 @@ std::string npy_header(size_t rows, size_t columns) {
   return header + text;
 }
 
+std::string ill_row(std::span<const float> values) {
+  fmt::memory_buffer row;
+  for (size_t i = 0; i < values.size(); ++i)
+    fmt::format_to(std::back_inserter(row), "{:.7e}{}", values[i],
+                   i + 1 < values.size() ? '\t' : '\n');
+  return fmt::to_string(row);
+}
+
 HoneybeeFolder::HoneybeeFolder(std::string path, const std::vector<HoneybeeGrid>& grids,
-                               const std::vector<HoneybeePath>& paths, size_t hours)
-    : path_(std::move(path)), hours_(hours) {
+                               const std::vector<HoneybeePath>& paths, size_t hours,
+                               ArrayFormat format)
+    : path_(std::move(path)), hours_(hours), format_(format) {
   const auto unique_id = [](const std::string& name, std::set<std::string>& used) {
     std::string id = identifier(name);
     for (int n = 2; !used.insert(id).second; ++n) id = fmt::format("{}_{}", identifier(name), n);
@@ -104,15 +137,13 @@ std::string HoneybeeFolder::folder_of(const PathNames& path, size_t state) const
 
 void HoneybeeFolder::open(GridFiles& grid) const {
   grid.has_light.assign(paths_.size(), false);
-  grid.error = std::make_unique<AtomicFile>(path_ + errors + "/" + grid.id + ".npy");
-  grid.error->write(npy_header(grid.sensors, hours_));
+  grid.error = std::make_unique<ArrayFiles>(path_ + errors + "/" + grid.id, grid.sensors, hours_,
+                                            ArrayFormat::npy);
   for (const PathNames& p : paths_) {
     std::vector<StateFiles>& files = grid.files.emplace_back();
     for (size_t s = 0; s < p.states.size(); ++s) {
       const auto open_part = [&](const char* part) {
-        auto file = std::make_unique<AtomicFile>(folder_of(p, s) + part + "/" + grid.id + ".npy");
-        file->write(npy_header(grid.sensors, hours_));
-        return file;
+        return ArrayFiles(folder_of(p, s) + part + "/" + grid.id, grid.sensors, hours_, format_);
       };
       files.push_back({open_part(parts[0]), open_part(parts[1])});
     }
@@ -142,16 +173,13 @@ void HoneybeeFolder::add(const HoursOfSensor& hours) {
   }
   GridFiles& grid = grids_[grid_];
   if (grid.files.empty()) open(grid);
-  const auto bytes = [](const std::vector<float>& v) {
-    return std::string_view(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(float));
-  };
-  grid.error->write(bytes(hours.error));
+  grid.error->add_row(hours.error);
   size_t k = 0;
   for (size_t p = 0; p < paths_.size(); ++p)
     for (StateFiles& f : grid.files[p]) {
       const HoursOfState& state = hours.states[k++];
-      f.total->write(bytes(state.total));
-      f.direct->write(bytes(state.sun));
+      f.total.add_row(state.total);
+      f.direct.add_row(state.sun);
       grid.has_light[p] = grid.has_light[p] || std::any_of(state.total.begin(), state.total.end(),
                                                            [](float lx) { return lx > 0; });
     }
@@ -184,8 +212,8 @@ void HoneybeeFolder::finish(const WeatherYear& year, const YearSkies& skies,
     for (size_t p = 0; p < paths_.size(); ++p) {
       if (!g.has_light[p] && !(is_dark && p == 0)) continue;
       for (StateFiles& f : g.files[p]) {
-        f.total->commit();
-        f.direct->commit();
+        f.total.commit();
+        f.direct.commit();
       }
       light_paths.push_back(HoneybeeJson::array({paths_[p].id}));
       if (paths_[p].name != static_path) dynamic[paths_[p].id] = paths_[p].states;

@@ -4,9 +4,11 @@
 //
 // References: [1] Ladybug Tools, honeybee-radiance-postprocess, class Results: names of files.
 //   [2] NumPy, "numpy.lib.format": layout of .npy files.
+//   [3] The same package, command annual-daylight-npy-to-ill: layout of .ill files.
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,7 @@ struct HoneybeePath {
   std::string name;
   size_t states = 1;
 };
+enum class ArrayFormat { npy, npy_and_ill };
 
 // Writes arrays as sensors are added. The destructor removes them unless finish() was called. A
 // light path that brings no light to a grid gets no arrays for that grid.
@@ -31,7 +34,8 @@ class HoneybeeFolder {
   // Throws EnvironmentError if a file cannot be written. Names that file systems may refuse are
   // changed for files, and kept as display names.
   HoneybeeFolder(std::string path, const std::vector<HoneybeeGrid>& grids,
-                 const std::vector<HoneybeePath>& paths, size_t hours);
+                 const std::vector<HoneybeePath>& paths, size_t hours,
+                 ArrayFormat format = ArrayFormat::npy);
   ~HoneybeeFolder();
   HoneybeeFolder(const HoneybeeFolder&) = delete;
   HoneybeeFolder& operator=(const HoneybeeFolder&) = delete;
@@ -53,6 +57,7 @@ class HoneybeeFolder {
 
   std::string path_;
   size_t hours_;
+  ArrayFormat format_;
   std::vector<PathNames> paths_;
   std::vector<GridFiles> grids_;
   size_t grid_ = 0, sensor_ = 0;  // next one
@@ -60,5 +65,7 @@ class HoneybeeFolder {
 
 // Returns the header of an array of little-endian floats, row by row [2].
 std::string npy_header(size_t rows, size_t columns);
+// Returns one row of a text array: numbers in exponential notation between tabs [3].
+std::string ill_row(std::span<const float> values);
 
 }  // namespace troffer

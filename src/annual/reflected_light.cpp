@@ -188,9 +188,15 @@ std::vector<ReflectedReplicate> reflected_light(const PreparedScene& scene,
     ReflectedReplicate out{
         SunGrid(year.latitude_deg, year.steps, {x, shift.next_double()}), 0, 0, 0, {}};
     const OutsideSources sources(compass, out.suns.nodes());
+    out.sources = sources.size();
+    ReplicateKeeper* keeper = options.keeper;
+    if (keeper != nullptr &&
+        (keeper->find(size_t(r), sensors.size(), out) || !keeper->is_own(size_t(r)))) {
+      replicates.push_back(std::move(out));
+      continue;
+    }
     const TransportCells cells(scene, sensors, options.rays, seed, options.threads, stop);
     if (stop.load()) break;
-    out.sources = sources.size();
     out.cells = cells.cell_count();
     out.links = cells.rows().all().size();
     out.coefficients.resize(sensors.size() * out.sources);
@@ -208,6 +214,7 @@ std::vector<ReflectedReplicate> reflected_light(const PreparedScene& scene,
       if (progress) progress((r + fraction) / replicate_count);
     });
     if (stop.load()) break;
+    if (keeper != nullptr) keeper->keep(size_t(r), out);
     replicates.push_back(std::move(out));
   }
   return replicates;

@@ -34,10 +34,22 @@ struct ReflectedReplicate {
   }
 };
 
+// Keeps finished replicates of one scene (reflected_store.h).
+class ReplicateKeeper {
+ public:
+  virtual ~ReplicateKeeper() = default;
+  // Sets all but `suns` and `sources` of a replicate that was kept. Returns false otherwise.
+  virtual bool find(size_t replicate, size_t sensors, ReflectedReplicate& out) = 0;
+  // False if another process computes the replicate, which then gets no coefficients here.
+  virtual bool is_own(size_t replicate) const = 0;
+  virtual void keep(size_t replicate, const ReflectedReplicate& finished) = 0;
+};
+
 struct ReflectedOptions {
   TransportRays rays;
   uint64_t seed = 0;
   int threads = 0;
+  ReplicateKeeper* keeper = nullptr;  // may be null
 };
 
 // Computes all replicates. Returns fewer once `stop` is set. Memory besides the results: per thread

@@ -35,8 +35,8 @@ void check_members(const JsonNode& node, const std::set<std::string>& known) {
     }
 }
 
-WindowState read_state(const JsonNode& node, size_t number) {
-  check_members(node, {"name", "shown", "transmittance", "material"});
+WindowState read_state(const JsonNode& node, size_t number, const std::vector<Fabric>& fabrics) {
+  check_members(node, {"name", "shown", "transmittance", "material", "fabric"});
   WindowState s;
   s.name = node.string_or("name", fmt::format("state {}", number));
   s.shown = names_in(node, "shown");
@@ -44,7 +44,22 @@ WindowState read_state(const JsonNode& node, size_t number) {
   if (!(s.transmittance >= 0 && s.transmittance <= 1))
     node.member("transmittance").fail("is not a factor from 0 to 1");
   s.material = node.string_or("material", "");
+  s.fabric = node.string_or("fabric", "");
+  if (s.fabric.empty()) return s;
+  if (s.shown.empty()) node.fail("has a \"fabric\" but names no \"shown\" nodes made of it");
+  if (std::none_of(fabrics.begin(), fabrics.end(),
+                   [&](const Fabric& f) { return f.name == s.fabric; }))
+    node.member("fabric").fail("is none of the \"fabrics\"");
   return s;
+}
+
+Fabric read_fabric(const JsonNode& node) {
+  check_members(node, {"name", "openness", "transmittance", "reflectance"});
+  const Fabric f{node.member("name").as_string(), node.number_or("openness", 0),
+                 node.number_or("transmittance", 0), node.number_or("reflectance", 0)};
+  if (f.name.empty()) node.fail("has an empty name");
+  if (const std::string fault = fault_of(f); !fault.empty()) node.fail(fault);
+  return f;
 }
 
 bool fits_any(const std::string& name, const std::vector<std::string>& patterns) {
@@ -144,10 +159,25 @@ class StateMaker {
       }
       return at->second;
     };
+    repaint(group.windows, material_for);
+  }
+  void weave(const WindowState& state, const std::vector<Fabric>& fabrics) {
+    const auto at = std::find_if(fabrics.begin(), fabrics.end(),
+                                 [&](const Fabric& f) { return f.name == state.fabric; });
+    if (at == fabrics.end()) return;
+    const auto material = uint32_t(scene_.materials.size());
+    scene_.materials.push_back(material_of(*at));
+    repaint(state.shown, [&](uint32_t) { return material; });
+  }
+
+ private:
+  // Gives the nodes of these names the material material_for(own material).
+  template <class MaterialFor>
+  void repaint(const std::vector<std::string>& names, const MaterialFor& material_for) {
     for (Mesh& m : scene_.meshes)
-      if (fits_any(m.name, group.windows)) m.material = material_for(m.material);
+      if (fits_any(m.name, names)) m.material = material_for(m.material);
     for (Instance& i : scene_.instances) {
-      if (!fits_any(i.name, group.windows)) continue;
+      if (!fits_any(i.name, names)) continue;
       Mesh copy = scene_.instanced_meshes[i.mesh];
       copy.material = material_for(copy.material);
       i.mesh = uint32_t(scene_.instanced_meshes.size());
@@ -155,20 +185,23 @@ class StateMaker {
     }
   }
 
- private:
   Scene& scene_;
   std::map<uint32_t, uint32_t> changed_;  // new material by old one, for one group
 };
 
 }  // namespace
 
-std::vector<WindowGroup> read_window_groups(const std::string& path) {
+WindowGroups read_window_groups(const std::string& path) {
   const JsonDocument document(path, read_text_file(path, most_group_bytes));
   const JsonNode root = document.root();
   if (!root.is_object()) root.fail("is not an object with \"groups\"");
-  check_members(root, {"groups"});
+  check_members(root, {"groups", "fabrics"});
+  WindowGroups all;
+  const auto fabrics = root.find_value("fabrics");
+  for (size_t i = 0; fabrics && i < fabrics->size(); ++i)
+    all.fabrics.push_back(read_fabric(fabrics->element(i)));
   const JsonNode list = root.member("groups");
-  std::vector<WindowGroup> groups;
+  std::vector<WindowGroup>& groups = all.groups;
   for (size_t i = 0; i < list.size(); ++i) {
     const JsonNode node = list.element(i);
     check_members(node, {"name", "windows", "states"});
@@ -180,11 +213,11 @@ std::vector<WindowGroup> read_window_groups(const std::string& path) {
       if (groups[k].name == g.name) node.fail("has the name of another group");
     const auto states = node.find_value("states");
     for (size_t k = 0; states && k < states->size(); ++k)
-      g.states.push_back(read_state(states->element(k), k));
-    if (g.states.empty()) g.states.push_back(WindowState{"state 0", {}, 1, ""});
+      g.states.push_back(read_state(states->element(k), k, all.fabrics));
+    if (g.states.empty()) g.states.push_back(WindowState{"state 0", {}, 1, "", ""});
   }
   if (groups.empty()) list.fail("is empty");
-  return groups;
+  return all;
 }
 
 void check_window_groups(const Scene& scene, const std::vector<WindowGroup>& groups) {
@@ -212,13 +245,15 @@ void check_window_groups(const Scene& scene, const std::vector<WindowGroup>& gro
   }
 }
 
-Scene with_window_states(Scene scene, const std::vector<WindowGroup>& groups,
+Scene with_window_states(Scene scene, const WindowGroups& all,
                          std::span<const std::optional<size_t>> states) {
   StateMaker maker(scene);
   maker.remove_lights();
-  for (size_t g = 0; g < groups.size(); ++g) {
-    maker.hide(groups[g], states[g]);
-    maker.set_windows(groups[g], states[g]);
+  for (size_t g = 0; g < all.groups.size(); ++g) {
+    const WindowGroup& group = all.groups[g];
+    maker.hide(group, states[g]);
+    maker.set_windows(group, states[g]);
+    if (states[g]) maker.weave(group.states[*states[g]], all.fabrics);
   }
   return scene;
 }

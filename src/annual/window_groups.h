@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "annual/fabric.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -17,6 +18,7 @@ struct WindowState {
   std::vector<std::string> shown;  // nodes, such as blinds; absent in states that do not name them
   double transmittance = 1;        // factor on the light that the windows transmit
   std::string material;            // of the windows in this state; empty: their own
+  std::string fabric;              // of the shown nodes (WindowGroups::fabrics); empty: their own
 };
 struct WindowGroup {
   std::string name;
@@ -24,8 +26,14 @@ struct WindowGroup {
   std::vector<WindowState> states;   // at least one
 };
 
+// Contents of a file.
+struct WindowGroups {
+  std::vector<WindowGroup> groups;
+  std::vector<Fabric> fabrics;
+};
+
 // Reads the file. Throws InputError with line and column for other contents.
-std::vector<WindowGroup> read_window_groups(const std::string& path);
+WindowGroups read_window_groups(const std::string& path);
 
 // Throws UsageError for names that fit nothing in the scene, for windows of several groups, and for
 // transmittances of windows that have no transmission to scale.
@@ -34,7 +42,7 @@ void check_window_groups(const Scene& scene, const std::vector<WindowGroup>& gro
 // Returns the scene with group g in state states[g]. If that is empty, the group's windows are
 // black and its shown nodes absent. Light sources are removed, since indices of lights refer to
 // meshes.
-Scene with_window_states(Scene scene, const std::vector<WindowGroup>& groups,
+Scene with_window_states(Scene scene, const WindowGroups& groups,
                          std::span<const std::optional<size_t>> states);
 
 }  // namespace troffer

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 
+#include "base/units.h"
 #include "render/sample_sets.h"
 
 namespace troffer {
@@ -60,30 +62,30 @@ class GridCounter {
   size_t first_, count_;
 };
 
-YearVerdict verdict(const YearFigure& f, double limit, bool is_least) {
-  if (std::abs(f.value - limit) < errors_of_verdict * f.error) return YearVerdict::undecided;
-  return (is_least ? f.value >= limit : f.value <= limit) ? YearVerdict::met : YearVerdict::not_met;
-}
-
-void add_least(const std::string& title, const YearFigure& f, double least, GridResult& out) {
-  out.requirements.push_back(
-      {title, fmt::format("at least {:g} % of the plane", least), f, verdict(f, least, true)});
+void add_least(YearScheme scheme, int level, const std::string& title, const YearFigure& f,
+               double least, GridResult& out) {
+  out.requirements.push_back({scheme, level, title,
+                              fmt::format("at least {:g} % of the plane", least), f,
+                              year_verdict(f, least, true)});
 }
 
 void add_en_17037(const GridCounter& grid, GridResult& out) {
   struct Level {
+    int number;
     const char* name;
     SensorFigure target, minimum;
     int target_lx, minimum_lx;
   };
   // [3], table A.1
   for (const Level& l :
-       {Level{"minimum", SensorFigure::daylight_300, SensorFigure::daylight_100, 300, 100},
-        Level{"medium", SensorFigure::daylight_500, SensorFigure::daylight_300, 500, 300},
-        Level{"high", SensorFigure::daylight_750, SensorFigure::daylight_500, 750, 500}}) {
-    add_least(fmt::format("EN 17037 {}: {} lx in half of the daylight hours", l.name, l.target_lx),
+       {Level{1, "minimum", SensorFigure::daylight_300, SensorFigure::daylight_100, 300, 100},
+        Level{2, "medium", SensorFigure::daylight_500, SensorFigure::daylight_300, 500, 300},
+        Level{3, "high", SensorFigure::daylight_750, SensorFigure::daylight_500, 750, 500}}) {
+    add_least(YearScheme::en_17037, l.number,
+              fmt::format("EN 17037 {}: {} lx in half of the daylight hours", l.name, l.target_lx),
               grid.share_from(l.target, of_time), 50, out);
-    add_least(fmt::format("EN 17037 {}: {} lx in half of the daylight hours", l.name, l.minimum_lx),
+    add_least(YearScheme::en_17037, l.number,
+              fmt::format("EN 17037 {}: {} lx in half of the daylight hours", l.name, l.minimum_lx),
               grid.share_from(l.minimum, of_time), 95, out);
   }
 }
@@ -91,13 +93,16 @@ void add_en_17037(const GridCounter& grid, GridResult& out) {
 void add_leed(const YearFigure& sda, const YearFigure& ase, const YearFigure& option_2,
               bool has_equinoxes, GridResult& out) {
   for (const auto& [least, points] : {std::pair{40, 1}, {55, 2}, {75, 3}})
-    add_least(fmt::format("LEED v4.1 option 1, {} point{}: sDA", points, points > 1 ? "s" : ""),
+    add_least(YearScheme::leed_option_1, points,
+              fmt::format("LEED v4.1 option 1, {} point{}: sDA", points, points > 1 ? "s" : ""),
               sda, least, out);
-  out.requirements.push_back({"LEED v4.1 option 1: ASE", "at most 10 % of the plane, or a remedy",
-                              ase, verdict(ase, 10, false)});
+  out.requirements.push_back({YearScheme::leed_ase, 1, "LEED v4.1 option 1: ASE",
+                              "at most 10 % of the plane, or a remedy", ase,
+                              year_verdict(ase, 10, false)});
   if (!has_equinoxes) return;
   for (const auto& [least, points] : {std::pair{55, 1}, {75, 2}, {90, 3}})
-    add_least(fmt::format("LEED v4.1 option 2, {} point{}: 300 to 3000 lx at 9 and 15 h", points,
+    add_least(YearScheme::leed_option_2, points,
+              fmt::format("LEED v4.1 option 2, {} point{}: 300 to 3000 lx at 9 and 15 h", points,
                           points > 1 ? "s" : ""),
               option_2, least, out);
 }
@@ -151,9 +156,41 @@ double error_of_mean(double squares, size_t n) {
 YearFigure with_spread(double of_all, std::span<const double> of_replicates) {
   double mean = 0, squares = 0;
   const auto n = double(of_replicates.size());
-  for (const double v : of_replicates) mean += v / n;
-  for (const double v : of_replicates) squares += (v - mean) * (v - mean);
+  // Differences from the first value, so that equal values have no error by rounding.
+  for (const double v : of_replicates) mean += (v - of_replicates[0]) / n;
+  for (const double v : of_replicates) squares += sqr(v - of_replicates[0] - mean);
   return {of_all, error_of_mean(squares, of_replicates.size())};
+}
+
+YearVerdict year_verdict(const YearFigure& f, double limit, bool is_least) {
+  if (std::abs(f.value - limit) < errors_of_verdict * f.error) return YearVerdict::undecided;
+  return (is_least ? f.value >= limit : f.value <= limit) ? YearVerdict::met : YearVerdict::not_met;
+}
+
+ReachedLevel level_reached(const GridResult& result, YearScheme scheme) {
+  std::map<int, YearVerdict> worst;  // by level
+  for (const GridRequirement& q : result.requirements) {
+    if (q.scheme != scheme) continue;
+    YearVerdict& v = worst.try_emplace(q.level, YearVerdict::met).first->second;
+    if (q.verdict == YearVerdict::not_met || v == YearVerdict::met) v = q.verdict;
+  }
+  ReachedLevel reached;
+  for (const auto& [level, v] : worst) {
+    if (v == YearVerdict::met) reached.sure = level;
+    if (v != YearVerdict::not_met) reached.possible = level;
+  }
+  return reached;
+}
+
+YearFigure joint_figure(std::span<const YearFigure> figures, std::span<const size_t> sensors) {
+  YearFigure sum;
+  double all = 0;
+  for (size_t i = 0; i < figures.size(); ++i) {
+    sum.value += figures[i].value * double(sensors[i]);
+    sum.error += figures[i].error * double(sensors[i]);
+    all += double(sensors[i]);
+  }
+  return all > 0 ? YearFigure{sum.value / all, sum.error / all} : sum;
 }
 
 YearFigure FigureTable::of(size_t sensor, SensorFigure figure) const {

@@ -96,7 +96,10 @@ struct GridFigure {
 
 // A requirement of a standard, and whether a grid meets it.
 enum class YearVerdict { met, not_met, undecided };
+enum class YearScheme { leed_option_1, leed_ase, leed_option_2, en_17037 };
 struct GridRequirement {
+  YearScheme scheme = YearScheme::en_17037;
+  int level = 1;      // points of LEED; 1 minimum, 2 medium, 3 high in EN 17037
   std::string title;  // "EN 17037, target illuminance 300 lx (minimum)"
   std::string need;   // "at least 50 % of the plane"
   YearFigure figure;
@@ -107,6 +110,19 @@ struct GridResult {
   std::vector<GridFigure> figures;
   std::vector<GridRequirement> requirements;
 };
+
+// Levels of a scheme: the best one whose requirements are all met, and the best one that may be met
+// once undecided requirements are decided. 0: none.
+struct ReachedLevel {
+  int sure = 0, possible = 0;
+};
+ReachedLevel level_reached(const GridResult& result, YearScheme scheme);
+
+// Figure of several grids together, weighted by their numbers of sensors. The grids' errors may
+// depend on each other, so they add up.
+YearFigure joint_figure(std::span<const YearFigure> figures, std::span<const size_t> sensors);
+// Verdict on "at least" or "at most" a limit. Undecided within two standard errors.
+YearVerdict year_verdict(const YearFigure& figure, double limit, bool is_least);
 
 // Returns the figures of the sensors first … first + count - 1, each of which stands for the same
 // area. A requirement is undecided if the limit lies within two standard errors. has_blinds: there

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "api/light_settings.h"
+#include "api/measuring_points.h"
 #include "api/scene_impl.h"
 #include "api/watched.h"
 #include "base/error.h"
@@ -14,21 +15,18 @@
 
 namespace troffer::api {
 
-namespace {
-
-std::vector<MeasuringPoint> measuring_points(const std::vector<MeasurePoint>& points) {
+std::vector<MeasuringPoint> measuring_points(const std::vector<MeasurePoint>& points,
+                                             const std::string& owner) {
   std::vector<MeasuringPoint> made;
   made.reserve(points.size());
   for (size_t i = 0; i < points.size(); ++i) {
-    const std::string owner = fmt::format("point {}: its ", i);
-    const Vec3d normal = direction(points[i].normal, owner + "normal");
+    const std::string its = fmt::format("{}point {}: its ", owner, i);
+    const Vec3d normal = direction(points[i].normal, its + "normal");
     (void)normal;  // checked only: the normal keeps its given length
-    made.push_back({place(points[i].position, owner + "position"), Vec3(vec(points[i].normal))});
+    made.push_back({place(points[i].position, its + "position"), Vec3(vec(points[i].normal))});
   }
   return made;
 }
-
-}  // namespace
 
 Measurements measure(Scene& scene, const std::vector<MeasurePoint>& points,
                      const LightOptions& options, const Progress& progress) {

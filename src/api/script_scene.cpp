@@ -18,7 +18,7 @@
 namespace troffer {
 
 ScriptScene::ScriptScene(const std::string& file, const ImportOptions& options)
-    : scene_(with_joined_lights(import_scene(file, options))) {
+    : scene_(with_joined_lights(import_scene(file, options))), options_(options) {
   for (const Light& e : scene_.lights) dimmed_.push_back({e.radiance, e.sky.ground});
 }
 
@@ -28,6 +28,7 @@ ScriptScene::ScriptScene(const Vec3& up, bool is_photometric) : up_(up) {
 
 Scene& ScriptScene::change() {
   prepared_ = nullptr;
+  is_changed_ = true;
   return scene_;
 }
 
@@ -137,11 +138,11 @@ void ScriptScene::set_radiance(const std::string& name, Rgb radiance) {
 }
 
 void ScriptScene::apply_dimmers() {
-  Scene& scene = change();
+  prepared_ = nullptr;
   for (size_t i = 0; i < dimmed_.size(); ++i) {
     const auto dimmer = float(dimmed_[i].dimmer);
-    scene.lights[i].radiance = dimmed_[i].radiance * dimmer;
-    scene.lights[i].sky.ground = dimmed_[i].ground * dimmer;
+    scene_.lights[i].radiance = dimmed_[i].radiance * dimmer;
+    scene_.lights[i].sky.ground = dimmed_[i].ground * dimmer;
   }
 }
 
@@ -182,7 +183,7 @@ void ScriptScene::add_light(const DaylightOptions& options) {
     const auto known = dimmers.find(e.name);
     dimmed.push_back({e.radiance, e.sky.ground, known == dimmers.end() ? 1 : known->second});
   }
-  change() = std::move(changed);
+  scene_ = std::move(changed);
   dimmed_ = std::move(dimmed);
   apply_dimmers();
 }

@@ -30,6 +30,10 @@ class ScriptScene {
   // Returns the scene for changes and discards the prepared scene. Call note_new_lights() after
   // appending lights.
   Scene& change();
+  // Options that the file was loaded with.
+  const ImportOptions& import_options() const { return options_; }
+  // False while surfaces and materials are those of the file.
+  bool is_changed() const { return is_changed_; }
   void note_new_lights();
   // Calls `add`, which appends to the scene. If it throws, the scene is as it was.
   template <class F>
@@ -99,6 +103,8 @@ class ScriptScene {
   void set_dimmers(const std::vector<size_t>& lights, double dimmer);
 
   Scene scene_;
+  ImportOptions options_;
+  bool is_changed_ = false;
   std::optional<Vec3> up_;      // empty for a scene from a file
   std::vector<Dimmed> dimmed_;  // one per light of scene_
   std::shared_ptr<const PreparedScene> prepared_;

@@ -51,7 +51,7 @@ void AnnualSink::open(size_t hours) {
   for (const AnnualGrid& g : grids_) named.push_back({g.name, g.count});
   std::vector<HoneybeePath> paths;
   for (const LightPath& p : paths_) paths.push_back({p.name, p.states.size()});
-  arrays_ = std::make_unique<HoneybeeFolder>(folder_, named, paths, hours);
+  arrays_ = std::make_unique<HoneybeeFolder>(folder_, named, paths, hours, format_);
 }
 
 }  // namespace troffer

@@ -13,9 +13,14 @@ namespace troffer {
 class AnnualSink {
  public:
   // folder: for arrays. grids, eyes: filled in; eyes are the points behind those of grids.
-  AnnualSink(std::string folder, const std::vector<LightPath>& paths,
+  AnnualSink(std::string folder, ArrayFormat format, const std::vector<LightPath>& paths,
              std::vector<AnnualGrid>& grids, std::vector<EyeYear>& eyes, DimmingYear& dimming)
-      : folder_(std::move(folder)), paths_(paths), grids_(grids), eyes_(eyes), dimming_(dimming) {}
+      : folder_(std::move(folder)),
+        format_(format),
+        paths_(paths),
+        grids_(grids),
+        eyes_(eyes),
+        dimming_(dimming) {}
 
   void take(size_t sensor, const HoursOfSensor& hours);
   HoneybeeFolder* arrays() { return arrays_.get(); }  // null: nothing came
@@ -24,6 +29,7 @@ class AnnualSink {
   void open(size_t hours);
 
   std::string folder_;
+  ArrayFormat format_;
   const std::vector<LightPath>& paths_;
   std::vector<AnnualGrid>& grids_;
   std::vector<EyeYear>& eyes_;

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
 #include "annual/annual_page.h"
 #include "annual/annual_text.h"
 #include "annual/extras_text.h"
-#include "app/annual_scenes.h"
+#include "annual/path_scenes.h"
 #include "app/annual_sink.h"
 #include "app/common_options.h"
 #include "app/grid_points.h"
@@ -76,13 +77,19 @@ void guard_outputs(const AnnualCommand& c, OutputGuard& guard) {
   guard.add_input("--groups", c.groups);
   guard.add_input("--eyes", c.eyes);
   guard.add_input("--sunlight", c.sunlight);
+  if (c.lasting.is_part()) return;
   for (const std::string& name : output_files(c))
     guard.add_output("-o", (std::filesystem::path(c.output) / name).string());
 }
 
-int tell_stopped() {
-  fmt::print(stderr, "interrupted: nothing was written\n");
-  return exit_interrupted;
+// Largest error of a grid's mean illuminance, relative to it.
+double error_of_means(const AnnualReport& report) {
+  double largest = 0;
+  for (const AnnualGrid& g : report.grids)
+    for (const GridFigure& f : g.result.figures)
+      if (f.key == "mean_lx" && f.figure.value > 0)
+        largest = std::max(largest, f.figure.error / f.figure.value);
+  return largest;
 }
 
 void write_outputs(const AnnualCommand& c, const AnnualReport& report, const ReportFolder& folder,
@@ -96,7 +103,7 @@ void write_outputs(const AnnualCommand& c, const AnnualReport& report, const Rep
   if (c.is_quiet) return;
   std::vector<std::string> written;
   for (const std::string& name : output_files(c)) written.push_back(folder.file(name));
-  tell_done(written, seconds_since(start), report.result.relative_error);
+  tell_done(written, seconds_since(start), error_of_means(report));
 }
 
 bool uses_grids_of_model(const AnnualCommand& c) {
@@ -159,8 +166,7 @@ struct AnnualInputs {
   std::vector<AnnualGrid> grids;
 };
 
-AnnualInputs read_inputs(const AnnualCommand& c) {
-  OutputGuard guard;
+AnnualInputs read_inputs(const AnnualCommand& c, OutputGuard& guard) {
   guard_outputs(c, guard);
   AnnualInputs in;
   in.list = points_of(c);
@@ -176,7 +182,7 @@ AnnualInputs read_inputs(const AnnualCommand& c) {
   in.compass = make_compass(up.decision.up, c.north_deg, is_mirrored(imported));
   in.electric = electric_groups(imported, c.electric);
   if (!in.electric.empty()) in.lit = imported;
-  in.paths = annual_paths(c.scene, imported, c.groups);
+  in.paths = annual_paths({c.scene.file, c.scene.options}, imported, c.groups);
   if (uses_grids_of_model(c))
     add_sensor_grids(imported, in.list);
   else
@@ -199,7 +205,7 @@ void add_annual(CLI::App& app, AnnualCommand& c) {
   CLI::App* s = app.add_subcommand("annual", "Compute a year of daylight and its metrics");
   add_scene_choice(*s, c.scene);
   s->add_option("--weather", c.weather, "Weather file: .epw, or Radiance's .wea")->required();
-  s->add_option("-o,--output", c.output, "Folder for tables, page and hourly arrays")->required();
+  s->add_option("-o,--output", c.output, "Folder for tables, page and hourly arrays");
   s->add_option("--points", c.points, "CSV file with columns x,y,z,nx,ny,nz");
   s->add_option("--grid", c.grid.grids,
                 "Grid of points over the upward surface of a node, with the height above it and "
@@ -239,7 +245,9 @@ void add_annual(CLI::App& app, AnnualCommand& c) {
   s->add_option("--gather-rays", c.options.rays_of_sensor,
                 "Rays that gather reflected light at a sensor [128 to 2048, by their number]")
       ->check(whole_number_between(8, 1 << 20));
+  s->add_flag("--ill", c.writes_ill, "Also write hourly arrays as text: .ill beside .npy");
   s->add_option("--title", c.title, "Title of the page [name of the scene file]");
+  add_annual_lasting(*s, c.lasting);
   add_threads(*s, c.options.threads);
   add_seed(*s, c.options.seed);
   s->add_flag("--quiet", c.is_quiet, "No progress bar, notes or warnings");
@@ -248,25 +256,31 @@ void add_annual(CLI::App& app, AnnualCommand& c) {
 int run_annual(const AnnualCommand& c, const std::string& command_line) {
   const Clock::time_point start = Clock::now();
   const ThreadLimit limit(c.options.threads);
-  AnnualInputs in = read_inputs(c);
-  const ReportFolder folder(c.output);
+  if (c.output.empty() && !c.lasting.is_part()) throw UsageError("annual: give -o FOLDER");
+  OutputGuard guard;
+  AnnualStore store(c.lasting, guard);
+  AnnualInputs in = read_inputs(c, guard);
+  std::vector<MeasuringPoint> points = in.list.points;
+  points.insert(points.end(), in.eyes.begin(), in.eyes.end());
+  AnnualRequest request{in.paths, points, {}, in.year, in.compass, in.eyes.size(), nullptr};
+  for (const AnnualGrid& g : in.grids) request.grids.push_back({g.first, g.count});
+  store.begin(request, c.options, c.is_quiet);
   const StopFlag& stop = install_stop_handlers();
+  if (c.lasting.is_part()) return store.run_part(request, c.options, c.is_quiet, stop);
+  const ReportFolder folder(c.output);
   AnnualExtras extras;
   extras.electric_target_lx = c.electric_target_lx;
   for (const MeasuringPoint& eye : in.eyes) extras.eyes.push_back({eye, {}, {}, {}});
   extras.lights = measure_electric(in.lit, in.electric, in.list.points, c.options.seed,
                                    c.options.threads, stop);
   DimmingYear dimming(extras.lights, c.electric_target_lx);
-  std::vector<MeasuringPoint> points = in.list.points;
-  points.insert(points.end(), in.eyes.begin(), in.eyes.end());
-  AnnualRequest request{in.paths, points, {}, in.year, in.compass, in.eyes.size()};
-  for (const AnnualGrid& g : in.grids) request.grids.push_back({g.first, g.count});
-  AnnualSink sink(folder.file(honeybee), in.paths, in.grids, extras.eyes, dimming);
+  AnnualSink sink(folder.file(honeybee), c.writes_ill ? ArrayFormat::npy_and_ill : ArrayFormat::npy,
+                  in.paths, in.grids, extras.eyes, dimming);
   ProgressBar bar("annual", c.is_quiet);
   const AnnualResult result = compute_annual(
       request, c.options, [&](size_t sensor, const HoursOfSensor& h) { sink.take(sensor, h); },
       [&](double f) { bar.update(f); }, stop);
-  if (!result.is_complete || sink.arrays() == nullptr) return tell_stopped();
+  if (!result.is_complete || sink.arrays() == nullptr) return store.end_early();
   for (AnnualGrid& g : in.grids)
     g.result = grid_result(result.figures, g.first, g.count, !result.times.mornings.empty(),
                            has_several_states(in.paths));
@@ -291,6 +305,7 @@ int run_annual(const AnnualCommand& c, const std::string& command_line) {
                             in.paths,
                             std::move(extras)};
   write_outputs(c, report, folder, *sink.arrays(), start);
+  store.remove();
   return exit_done;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "annual/annual.h"
+#include "app/annual_lasting.h"
 #include "app/commands.h"
 
 namespace troffer {
@@ -23,6 +24,8 @@ struct AnnualCommand {
   std::string sunlight_day = "03-21";
   std::vector<std::string> electric;  // groups of lights
   double electric_target_lx = 500;
+  bool writes_ill = false;
+  AnnualLasting lasting;
   std::string title;
   bool is_quiet = false;
 };

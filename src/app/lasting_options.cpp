@@ -11,24 +11,18 @@
 
 namespace troffer {
 
-namespace {
-
-// Parses "3/8".
-void parse_part(const std::string& text, RenderOptions& options) {
+void parse_part(const std::string& text, int& part, int& parts) {
   constexpr int most = 1'000'000;
   const char* end = text.data() + text.size();
-  const auto first = std::from_chars(text.data(), end, options.part);
+  const auto first = std::from_chars(text.data(), end, part);
   bool is_sound = first.ec == std::errc() && first.ptr != end && *first.ptr == '/';
   if (is_sound) {
-    const auto second = std::from_chars(first.ptr + 1, end, options.parts);
+    const auto second = std::from_chars(first.ptr + 1, end, parts);
     is_sound = second.ec == std::errc() && second.ptr == end;
   }
-  if (!is_sound || options.parts < 1 || options.parts > most || options.part < 1 ||
-      options.part > options.parts)
+  if (!is_sound || parts < 1 || parts > most || part < 1 || part > parts)
     throw UsageError("--part: '" + text + "' is not K/N with K from 1 to N");
 }
-
-}  // namespace
 
 void add_lasting_options(CLI::App& app, LastingOptions& o) {
   const CLI::Validator seconds = number_between(0.001, 1e9);
@@ -55,7 +49,7 @@ void apply_lasting_options(RenderCommand& c, bool has_spp) {
     if (!std::isfinite(v)) throw UsageError("limits must be numbers");
   if (l.is_resumed && l.checkpoint.empty()) throw UsageError("--resume needs --checkpoint FILE");
   if (!l.part.empty()) {
-    parse_part(l.part, c.options);
+    parse_part(l.part, c.options.part, c.options.parts);
     if (l.error_limit > 0)
       throw UsageError("--error-limit applies to the whole picture and does not go with --part");
     if (c.has_preview) throw UsageError("--preview does not go with --part");

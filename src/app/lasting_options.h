@@ -21,6 +21,9 @@ struct LastingOptions {
 
 void add_lasting_options(CLI::App& app, LastingOptions& options);
 
+// Parses "3/8". Throws UsageError for other texts.
+void parse_part(const std::string& text, int& part, int& parts);
+
 struct RenderCommand;
 // Sets the command's other options from these. Throws UsageError for contradictory options.
 // has_spp: --spp was given.

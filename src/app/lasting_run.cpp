@@ -36,10 +36,14 @@ void reserve_checkpoint(const RenderCommand& c, std::vector<OutputReservation>& 
       kind_of_solution(c.solution) == SolutionKind::missing)
     throw UsageError("--part reads the cells of --solution but does not create the file: " +
                      c.solution + " (create it with troffer radiosity --cells)");
-  if (path.empty()) return;
+  if (!path.empty()) reserve_checkpoint_file(path, c.lasting.is_resumed, reserved);
+}
+
+void reserve_checkpoint_file(const std::string& path, bool is_resumed,
+                             std::vector<OutputReservation>& reserved) {
   if (output_target(path).kind != OutputTarget::Kind::file)
     throw UsageError("--checkpoint must be a regular file: " + path);
-  if (!c.lasting.is_resumed && fs::exists(path))
+  if (!is_resumed && fs::exists(path))
     throw InputError(path, 0, 0, "already exists: continue from it with --resume, or remove it");
   reserved.emplace_back(path);
   remove_abandoned_files(path);  // a killed process may have left temporary files

@@ -17,6 +17,9 @@ namespace troffer {
 // Checks before any work that the checkpoint can be written and does not replace another one.
 // Throws UsageError, InputError, EnvironmentError.
 void reserve_checkpoint(const RenderCommand& command, std::vector<OutputReservation>& reserved);
+// The same for the file alone.
+void reserve_checkpoint_file(const std::string& path, bool is_resumed,
+                             std::vector<OutputReservation>& reserved);
 
 // A rendering with a time limit, a checkpoint, or as one part of a picture.
 class LastingRun {

@@ -139,6 +139,7 @@ constexpr std::array rows{
     OptionRow{"--exposure", output, "STOPS", ""},
     OptionRow{"--tone-map", output, "CURVE", ""},
     OptionRow{"--aov", output, "LAYER,…", ""},
+    OptionRow{"--ill", output, "", ""},
     OptionRow{"--preview", output, "", ""},
     OptionRow{"--unlit", output, "", ""},
     OptionRow{"--emissive", output, "", ""},
@@ -163,6 +164,7 @@ constexpr std::array rows{
     OptionRow{"--checkpoint-interval", limits, "SECONDS", ""},
     OptionRow{"--resume", limits, "", ""},
     OptionRow{"--part", limits, "K/N", ""},
+    OptionRow{"--join", limits, "FILE", "*"},
     // Methods
     OptionRow{"--solution", certified, "FILE", "*"},
     OptionRow{"--depth", path, "N", ""},

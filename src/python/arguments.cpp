@@ -19,4 +19,8 @@ api::Color color_taken(const py::handle& value, const std::string& name) {
   return taken<api::Color>(value, name);
 }
 
+void fail_unknown(const char* function, const std::string& name) {
+  throw py::type_error(std::string(function) + "() has no argument '" + name + "'");
+}
+
 }  // namespace troffer::bindings

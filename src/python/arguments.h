@@ -53,4 +53,7 @@ bool set_argument(const ArgumentTable<Options>& table, const std::string& name,
   return true;
 }
 
+// Throws TypeError for an argument that a function does not have.
+[[noreturn]] void fail_unknown(const char* function, const std::string& name);
+
 }  // namespace troffer::bindings

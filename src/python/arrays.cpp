@@ -87,4 +87,17 @@ std::vector<std::array<uint32_t, 3>> triangles_of(const py::object& value) {
   return triangles;
 }
 
+std::vector<api::MeasurePoint> points_of(const Points& array, const api::Point& up) {
+  if (array.ndim() != 2 || (array.shape(1) != 3 && array.shape(1) != 6))
+    throw api::UsageError("points are an array of shape (n, 6), or (n, 3)");
+  std::vector<api::MeasurePoint> points;
+  const auto a = array.unchecked<2>();
+  for (py::ssize_t i = 0; i < a.shape(0); ++i) {
+    api::MeasurePoint p{{a(i, 0), a(i, 1), a(i, 2)}, up};
+    if (a.shape(1) == 6) p.normal = {a(i, 3), a(i, 4), a(i, 5)};
+    points.push_back(p);
+  }
+  return points;
+}
+
 }  // namespace troffer::bindings

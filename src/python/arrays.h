@@ -11,10 +11,12 @@
 
 #include "troffer/image.h"
 #include "troffer/material.h"
+#include "troffer/measure.h"
 #include "troffer/render.h"
 
 namespace troffer::bindings {
 
+using Points = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 using Pixels = pybind11::array_t<float, pybind11::array::c_style | pybind11::array::forcecast>;
 
 // Converts an array (height, width, 3). Throws UsageError for other shapes.
@@ -35,5 +37,9 @@ std::vector<std::array<T, columns>> rows_of(const pybind11::object& value, const
 // Converts an array (n, 3) of whole numbers. Throws TypeError for other numbers and UsageError for
 // other shapes and for numbers outside [0, 2^32).
 std::vector<std::array<uint32_t, 3>> triangles_of(const pybind11::object& value);
+
+// Converts (n, 6): position and normal; or (n, 3): positions whose normals are `up`. Throws
+// UsageError for other shapes.
+std::vector<api::MeasurePoint> points_of(const Points& array, const api::Point& up);
 
 }  // namespace troffer::bindings

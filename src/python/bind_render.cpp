@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "python/arguments.h"
+#include "python/arrays.h"
 #include "python/bindings.h"
 #include "troffer/measure.h"
 #include "troffer/render.h"
@@ -15,7 +16,6 @@ namespace py = pybind11;
 
 namespace {
 
-using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using api::Kj92Options;
 using api::LightOptions;
 using api::RenderOptions;
@@ -64,10 +64,6 @@ bool set_light_argument(const std::string& name, const py::handle& value, LightO
          set_argument(kj92_arguments(), name, value, options.kj92);
 }
 
-[[noreturn]] void fail_unknown(const char* function, const std::string& name) {
-  throw py::type_error(std::string(function) + "() has no argument '" + name + "'");
-}
-
 std::unique_ptr<api::Picture> render_scene(api::Scene& s, const py::object& camera,
                                            const py::kwargs& arguments) {
   RenderOptions options;
@@ -96,20 +92,6 @@ std::unique_ptr<api::Picture> render_scene(api::Scene& s, const py::object& came
     made = std::make_unique<api::Picture>(picture);
   });
   return made;
-}
-
-// Accepts (n, 6): position and normal; or (n, 3): positions whose normals point up.
-std::vector<api::MeasurePoint> points_of(const Points& array, const api::Point& up) {
-  if (array.ndim() != 2 || (array.shape(1) != 3 && array.shape(1) != 6))
-    throw api::UsageError("points are an array of shape (n, 6), or (n, 3)");
-  std::vector<api::MeasurePoint> points;
-  const auto a = array.unchecked<2>();
-  for (py::ssize_t i = 0; i < a.shape(0); ++i) {
-    api::MeasurePoint p{{a(i, 0), a(i, 1), a(i, 2)}, up};
-    if (a.shape(1) == 6) p.normal = {a(i, 3), a(i, 4), a(i, 5)};
-    points.push_back(p);
-  }
-  return points;
 }
 
 std::unique_ptr<api::Measurements> measure_scene(api::Scene& s, const Points& array,

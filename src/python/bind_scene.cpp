@@ -80,6 +80,7 @@ void bind_scene(py::module_& m) {
   bind_building(scene);
   bind_results(m);
   bind_render(scene);
+  bind_annual(m, scene);
   bind_load(m);
 }
 

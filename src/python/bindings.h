@@ -24,6 +24,8 @@ void bind_building(SceneClass& scene);
 void bind_render(SceneClass& scene);
 // Binds Picture and Measurements.
 void bind_results(pybind11::module_& m);
+// Binds AnnualDaylight, AnnualGrid and Scene.annual().
+void bind_annual(pybind11::module_& m, SceneClass& scene);
 // Binds compare(), read_image() and write_image().
 void bind_images(pybind11::module_& m);
 

@@ -1,4 +1,4 @@
-"""Light in rooms: pictures, and illuminance at points."""
+"""Light in rooms: pictures, illuminance at points, and years of daylight."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -47,6 +47,19 @@ class _RenderOptions(_LightOptions, total=False):
     aovs: Sequence[str]
     time_limit: float
     error_limit: float
+
+class _AnnualOptions(TypedDict, total=False):
+    north: float
+    ground: float
+    occupancy: Path
+    groups: Path | None
+    blinds: Path
+    threshold: float
+    subdivision: int
+    gather_rays: int
+    threads: int
+    seed: int
+    progress: Progress | None
 
 class _MaterialOptions(TypedDict, total=False):
     base_color: Colour
@@ -129,6 +142,42 @@ class Measurements:
     @property
     def is_complete(self) -> bool: ...
     def __len__(self) -> int: ...
+
+class AnnualGrid:
+    @property
+    def name(self) -> str: ...
+    @property
+    def total(self) -> Floats: ...
+    @property
+    def standard_error(self) -> Floats: ...
+    @property
+    def direct(self) -> Floats: ...
+    @property
+    def metrics(self) -> dict[str, Doubles]: ...
+    @property
+    def metric_errors(self) -> dict[str, Doubles]: ...
+    @property
+    def figures(self) -> dict[str, tuple[float, float]]: ...
+    @property
+    def requirements(self) -> list[dict[str, Any]]: ...
+    def __len__(self) -> int: ...
+
+class AnnualDaylight:
+    @property
+    def grids(self) -> list[AnnualGrid]: ...
+    @property
+    def hours(self) -> Doubles: ...
+    @property
+    def occupied(self) -> npt.NDArray[np.bool_]: ...
+    @property
+    def states(self) -> dict[str, tuple[list[str], npt.NDArray[np.uint16]]]: ...
+    @property
+    def place(self) -> str: ...
+    @property
+    def error(self) -> float: ...
+    @property
+    def is_complete(self) -> bool: ...
+    def __getitem__(self, name: str) -> AnnualGrid: ...
 
 class Scene:
     def __init__(self, *, up: Triple = (0, 0, 1), photometric: bool = True) -> None: ...
@@ -252,6 +301,12 @@ class Scene:
     def measure(
         self, points: npt.ArrayLike, **arguments: Unpack[_LightOptions]
     ) -> Measurements: ...
+    def annual(
+        self,
+        weather: Path,
+        grids: npt.ArrayLike | dict[str, npt.ArrayLike] | None = None,
+        **arguments: Unpack[_AnnualOptions],
+    ) -> AnnualDaylight: ...
 
 def load(
     file: Path,

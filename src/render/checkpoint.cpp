@@ -60,7 +60,7 @@ void Checkpoint::read() {
     refuse("checkpoint of troffer " + text_of(h.program) + "; this is " + key_.program);
   if (h.scene != key_.scene) refuse("checkpoint of another scene, or of other light");
   if (h.settings != key_.settings)
-    refuse("checkpoint of a picture with other options, or another camera");
+    refuse("checkpoint made with other options, or for another camera or other points");
   if (h.preparation != key_.preparation) refuse("checkpoint made with another --solution");
   if (h.part != share_.part || h.parts != share_.parts)
     refuse("checkpoint of --part " + std::to_string(h.part) + "/" + std::to_string(h.parts));

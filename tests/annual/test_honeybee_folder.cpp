@@ -127,3 +127,39 @@ TEST_CASE("an unfinished folder leaves nothing") {
   }
   CHECK(!fs::exists(folder.path()));
 }
+
+// As numpy.savetxt(file, array, fmt='%.7e', delimiter='\t') in honeybee-radiance-postprocess, from
+// which numpy.loadtxt gives back every float.
+TEST_CASE("text arrays hold the same numbers as binary ones") {
+  CHECK(ill_row(std::vector<float>{0, 1234.5f, 0.03125f}) ==
+        "0.0000000e+00\t1.2345000e+03\t3.1250000e-02\n");
+  const TestFolder folder;
+  WeatherYear year;
+  year.steps.resize(3);
+  YearSkies skies{{0, 1, 2}, {ReinhartSky(1), {}}, {ReinhartSky(1), {}}, {}, {}, {}};
+  const std::vector<float> numbers{1.0f / 3, 98765.43f, 1e-3f};
+  {
+    HoneybeeFolder files(folder.path().string(), {{"a", 2}}, {{static_path, 1}}, 3,
+                         ArrayFormat::npy_and_ill);
+    HoursOfSensor h;
+    h.states = {{numbers, {0, 0, 0}}};
+    for (int i = 0; i < 2; ++i) files.add(h);
+    files.finish(year, skies, StateSchedule(1, 3));
+  }
+  const fs::path total = folder.path() / "__static_apertures__" / "default" / "total";
+  std::istringstream text(contents(total / "a.ill"));
+  for (int row = 0; row < 2; ++row) {
+    std::string line;
+    REQUIRE(std::getline(text, line));
+    std::istringstream values(line);
+    for (const float expected : numbers) {
+      std::string word;
+      REQUIRE(std::getline(values, word, '\t'));
+      CHECK(std::stof(word) == expected);
+    }
+    CHECK(values.peek() == EOF);
+  }
+  CHECK(text.peek() == EOF);
+  CHECK(fs::exists(total / "a.npy"));
+  CHECK(!fs::exists(folder.path() / "standard_error" / "a.ill"));
+}

@@ -76,8 +76,8 @@ Scene two_windows() {
 }
 
 const std::vector<WindowGroup> groups{
-    {"South", {"pane s*"}, {{"up", {}, 1, ""}, {"down", {"blind"}, 1, ""}}},
-    {"West", {"pane west"}, {{"clear", {}, 1, ""}, {"tinted", {}, 0.5, ""}}}};
+    {"South", {"pane s*"}, {{"up", {}, 1, "", ""}, {"down", {"blind"}, 1, "", ""}}},
+    {"West", {"pane west"}, {{"clear", {}, 1, "", ""}, {"tinted", {}, 0.5, "", ""}}}};
 
 using States = std::vector<std::optional<size_t>>;
 
@@ -95,8 +95,8 @@ const Material& material_of(const Scene& scene, const std::string& name) {
 }
 
 PathState state_of(const std::string& name, const States& states) {
-  return {name,
-          std::make_shared<const PreparedScene>(with_window_states(two_windows(), groups, states))};
+  return {name, std::make_shared<const PreparedScene>(
+                    with_window_states(two_windows(), {groups, {}}, states))};
 }
 
 // Midday and afternoon hours of a March day, with sun and haze.
@@ -151,7 +151,7 @@ TEST_CASE("a file of groups is read, and mistakes are named with their place") {
                       R"({"groups":[{"name":"South","windows":["pane*"],"states":[
                           {"name":"up"},{"shown":["blind"],"transmittance":0.5}]},
                           {"name":"Roof","windows":["roof"]}]})");
-  const std::vector<WindowGroup> read = read_window_groups(file.path());
+  const std::vector<WindowGroup> read = read_window_groups(file.path()).groups;
   REQUIRE(read.size() == 2);
   REQUIRE(read[0].states.size() == 2);
   CHECK(read[0].states[0].name == "up");
@@ -174,26 +174,27 @@ TEST_CASE("groups must fit the scene") {
   const auto with = [](const std::string& window, const WindowState& state) {
     return std::vector<WindowGroup>{{"g", {window}, {state}}};
   };
-  CHECK_THROWS_AS(check_window_groups(scene, with("door", {"s", {}, 1, ""})), UsageError);
-  CHECK_THROWS_AS(check_window_groups(scene, with("pane west", {"s", {"slat*"}, 1, ""})),
+  CHECK_THROWS_AS(check_window_groups(scene, with("door", {"s", {}, 1, "", ""})), UsageError);
+  CHECK_THROWS_AS(check_window_groups(scene, with("pane west", {"s", {"slat*"}, 1, "", ""})),
                   UsageError);
-  CHECK_THROWS_AS(check_window_groups(scene, with("pane west", {"s", {}, 1, "cloth"})), UsageError);
-  CHECK_THROWS_AS(check_window_groups(scene, with("floor", {"s", {}, 0.5, ""})), UsageError);
+  CHECK_THROWS_AS(check_window_groups(scene, with("pane west", {"s", {}, 1, "cloth", ""})),
+                  UsageError);
+  CHECK_THROWS_AS(check_window_groups(scene, with("floor", {"s", {}, 0.5, "", ""})), UsageError);
   std::vector<WindowGroup> twice = groups;
   twice[1].windows = {"pane*"};
   CHECK_THROWS_AS(check_window_groups(scene, twice), UsageError);
 }
 
 TEST_CASE("a scene shows the parts of its states, and black windows of other groups") {
-  const Scene open = with_window_states(two_windows(), groups, States{0, 0});
+  const Scene open = with_window_states(two_windows(), {groups, {}}, States{0, 0});
   CHECK(!has_mesh(open, "blind"));
   CHECK(material_of(open, "pane south").name == "glass");
-  const Scene down = with_window_states(two_windows(), groups, States{1, std::nullopt});
+  const Scene down = with_window_states(two_windows(), {groups, {}}, States{1, std::nullopt});
   CHECK(has_mesh(down, "blind"));
   CHECK(material_of(down, "pane south").name == "glass");
   CHECK(material_of(down, "pane west").base_color.value.is_black());
   CHECK(material_of(down, "pane west").kind == MaterialKind::diffuse);
-  const Scene tinted = with_window_states(two_windows(), groups, States{std::nullopt, 1});
+  const Scene tinted = with_window_states(two_windows(), {groups, {}}, States{std::nullopt, 1});
   CHECK(!has_mesh(tinted, "blind"));
   CHECK(std::exp(-tinted.materials[tinted.meshes[5].material].absorption.g) ==
         doctest::Approx(0.5));

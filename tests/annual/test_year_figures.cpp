@@ -113,6 +113,33 @@ TEST_CASE("figures of a grid are shares of its sensors") {
   CHECK(verdict("LEED v4.1 option 2, 3 points: 300 to 3000 lx at 9 and 15 h") ==
         YearVerdict::not_met);
   CHECK(verdict("EN 17037 minimum: 300 lx in half of the daylight hours") == YearVerdict::met);
+  CHECK(level_reached(r, YearScheme::leed_option_1).sure == 3);
+  CHECK(level_reached(r, YearScheme::leed_option_2).sure == 2);
+  CHECK(level_reached(r, YearScheme::leed_ase).possible == 0);
+}
+
+TEST_CASE("a level needs all of its requirements, and undecided ones leave it open") {
+  const auto level = [](const std::vector<std::pair<int, YearVerdict>>& verdicts) {
+    GridResult r;
+    for (const auto& [number, v] : verdicts)
+      r.requirements.push_back({YearScheme::en_17037, number, "", "", {}, v});
+    const ReachedLevel reached = level_reached(r, YearScheme::en_17037);
+    return std::pair(reached.sure, reached.possible);
+  };
+  using enum YearVerdict;
+  CHECK(level({{1, met}, {1, met}, {2, met}, {2, not_met}}) == std::pair(1, 1));
+  CHECK(level({{1, met}, {1, undecided}}) == std::pair(0, 1));
+  CHECK(level({{1, not_met}, {1, undecided}}) == std::pair(0, 0));
+  CHECK(level({{1, met}, {2, undecided}, {3, not_met}}) == std::pair(1, 2));
+  const YearFigure joint =
+      joint_figure(std::vector<YearFigure>{{40, 1}, {80, 3}}, std::vector<size_t>{30, 10});
+  CHECK(joint.value == doctest::Approx(50));
+  CHECK(joint.error == doctest::Approx(1.5));
+}
+
+TEST_CASE("replicates that agree have no error") {
+  const std::vector<double> same(8, 100.0 * 29 / 30);
+  CHECK(with_spread(same[0], same).error == 0);
 }
 
 TEST_CASE("a requirement within the error of its limit is undecided") {

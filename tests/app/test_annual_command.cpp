@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <csignal>
 #include <nlohmann/json.hpp>
 
@@ -131,6 +132,83 @@ TEST_CASE("eyes, sunlight and electric light are assessed on request") {
   CHECK(full < double(json["electric"][0]["occupied_hours"]));
   CHECK(double(json["electric"][0]["mean_lx"]) > 100);
   CHECK(test.has("electric.csv"));
+}
+
+TEST_CASE("--ill writes text beside the arrays") {
+  const AnnualRun test(room_with_blinds());
+  REQUIRE(test.run({"--ill"}).status == 0);
+  for (const char* file : {"0_South/total/desk.ill", "1_South/direct/desk.ill"})
+    CHECK_MESSAGE(test.has(std::string("honeybee/South/") + file), file);
+  const std::string text =
+      read_file(test.folder.path("year/honeybee/South/0_South/total/desk.ill"));
+  const std::string hours = read_file(test.folder.path("year/honeybee/sun-up-hours.txt"));
+  const auto sensors = std::count(text.begin(), text.end(), '\n');
+  CHECK(sensors == 2);
+  CHECK(std::count(text.begin(), text.end(), '\t') ==
+        sensors * (std::count(hours.begin(), hours.end(), '\n') - 1));
+}
+
+// Everything but the command line, which annual.json and the page repeat.
+bool same_results(const AnnualRun& a, const AnnualRun& b) {
+  for (const char* file : {"metrics.csv", "honeybee/South/0_South/total/desk.npy",
+                           "honeybee/South/1_South/direct/desk.npy",
+                           "honeybee/standard_error/desk.npy", "honeybee/dynamic_schedule.json"})
+    if (read_file(a.folder.path(std::string("year/") + file)) !=
+        read_file(b.folder.path(std::string("year/") + file)))
+      return false;
+  return true;
+}
+
+TEST_CASE("an interrupted year goes on from its checkpoint with the same bytes") {
+  const AnnualRun whole(room_with_blinds()), test(room_with_blinds());
+  REQUIRE(whole.run({}).status == 0);
+  const std::string file = test.folder.path("year.ck");
+  // An early stop may come before anything is finished; a later run then starts from the beginning.
+  for (int i = 0; i < 3; ++i) {
+    Running running(test.folder, test.words({"--checkpoint", file, "--resume",
+                                             "--checkpoint-interval", "0.001"}));
+    running.let_work(0.2 + 0.3 * i);
+    running.send(SIGINT);
+    const Finished f = running.wait();
+    CAPTURE(f.err);
+    CHECK((f.status == 130 || f.status == 0));
+    if (f.status != 130) break;
+    CHECK(says(f, "--resume continues"));
+    CHECK(!std::filesystem::exists(test.folder.path("year")));
+    CHECK(std::filesystem::exists(file));
+  }
+  REQUIRE(test.run({"--checkpoint", file, "--resume"}).status == 0);
+  CHECK(!std::filesystem::exists(file));
+  CHECK(same_results(whole, test));
+}
+
+TEST_CASE("parts of a year join to the same bytes") {
+  const AnnualRun whole(room_with_blinds()), test(room_with_blinds());
+  REQUIRE(whole.run({}).status == 0);
+  std::vector<std::string> join;
+  uintmax_t bytes = 0;
+  for (const char* k : {"1", "2", "3"}) {
+    const std::string file = test.folder.path(std::string("part") + k);
+    const Finished f = test.run({"--part", std::string(k) + "/3", "--checkpoint", file});
+    CAPTURE(f.err);
+    REQUIRE(f.status == 0);
+    CHECK(!std::filesystem::exists(test.folder.path("year")));
+    bytes += std::filesystem::file_size(file);
+    join.insert(join.end(), {"--join", file});
+  }
+  // With all parts there is nothing left to keep; a checkpoint of the whole holds what they hold.
+  REQUIRE(test.run(join).status == 0);
+  CHECK(same_results(whole, test));
+  const AnnualRun other(room_with_blinds());
+  const std::string all = other.folder.path("all");
+  REQUIRE(other.run({"--part", "1/1", "--checkpoint", all}).status == 0);
+  constexpr uintmax_t around = 72 + 16;  // header and end of each further file
+  CHECK(bytes == std::filesystem::file_size(all) + 2 * around);
+  CHECK(says(test.run({"--seed", "9", "--join", test.folder.path("part1")}), "other options"));
+  CHECK(says(test.run({"--join", test.weather}), "not a checkpoint"));
+  CHECK(test.run({"--part", "4/3", "--checkpoint", all}).status == 2);
+  CHECK(test.run({"--part", "1/3"}).status == 2);
+  CHECK(test.run({"--resume"}).status == 2);
 }
 
 TEST_CASE("an interrupted year leaves no folder") {
