@@ -3,6 +3,7 @@
 import argparse
 import os
 import re
+import signal
 import subprocess
 import sys
 
@@ -129,6 +130,8 @@ def main():
                  f"{', '.join(rules_in_source())}")
     os.makedirs(a.out, exist_ok=True)
     rows = {rule: [] for rule in rules}
+    # A shell that starts it in the background ignores this signal.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     scenes = [rooms.Room(seed, a) for seed in range(a.first, a.first + a.rooms)] + public_scenes(a)
     try:
         for k, scene in enumerate(scenes):
