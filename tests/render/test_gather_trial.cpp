@@ -18,11 +18,8 @@ PlannedPart decision_of(const RenderResult& r) {
   return {};
 }
 
-}  // namespace
-
-TEST_CASE("gathers: what surrogate samples resolve does not count as noise") {
-  // A matte room and a lamp in view. Its outline varies within many pixels, but surrogate samples
-  // resolve it.
+// Renders a matte room with a lamp in view.
+RenderResult matte_room(int width, int height, float error) {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f});
   add_box_inside(s, grey, {-2, -2, 0}, {2, 2, 2.5f});
@@ -30,12 +27,18 @@ TEST_CASE("gathers: what surrogate samples resolve does not count as noise") {
   const PreparedScene scene(std::move(s));
   RenderOptions o;
   o.indirect = Indirect::automatic;
-  o.error = 0.1;
-  o.width = 128;
-  o.height = 96;
+  o.error = error;
+  o.width = width;
+  o.height = height;
   o.threads = 2;
-  const RenderResult r =
-      render_now(scene, look_at({-1.8f, -1.8f, 1}, {0.5f, 0.5f, 1.8f}, {0, 0, 1}, 70), o);
+  return render_now(scene, look_at({-1.8f, -1.8f, 1}, {0.5f, 0.5f, 1.8f}, {0, 0, 1}, 70), o);
+}
+
+}  // namespace
+
+TEST_CASE("gathers: what surrogate samples resolve does not count as noise") {
+  // The outline of the lamp varies within many pixels, but surrogate samples resolve it.
+  const RenderResult r = matte_room(128, 96, 0.1f);
   const PlannedPart decision = decision_of(r);
   REQUIRE(decision.reason.find("gathers") != std::string::npos);
   CHECK(decision.choice == "no");
@@ -49,18 +52,5 @@ TEST_CASE("gathers: what surrogate samples resolve does not count as noise") {
 }
 
 TEST_CASE("gathers: small pictures, too, compare them with cached paths") {
-  Scene s;
-  const uint32_t grey = add_diffuse(s, Rgb{0.6f});
-  add_box_inside(s, grey, {-2, -2, 0}, {2, 2, 2.5f});
-  add_ceiling_light(s, 1, 2.4f, Rgb{10});
-  const PreparedScene scene(std::move(s));
-  RenderOptions o;
-  o.indirect = Indirect::automatic;
-  o.error = 0.02;
-  o.width = 32;
-  o.height = 24;
-  o.threads = 2;
-  const PlannedPart decision = decision_of(
-      render_now(scene, look_at({-1.8f, -1.8f, 1}, {0.5f, 0.5f, 1.8f}, {0, 0, 1}, 70), o));
-  CHECK(decision.reason.find("gathers") != std::string::npos);
+  CHECK(decision_of(matte_room(32, 24, 0.02f)).reason.find("gathers") != std::string::npos);
 }
