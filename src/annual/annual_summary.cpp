@@ -77,7 +77,7 @@ std::string grids_table(const AnnualReport& r) {
   return table.html();
 }
 
-// What LEED option 1 asks of the calculation [1, 2].
+// Returns a table of the conditions that LEED option 1 sets for the calculation [1, 2].
 std::string conditions_table(const AnnualReport& r) {
   HtmlTable table({"Condition of LEED v4.1, option 1", "Here", ""});
   const auto add = [&](const char* name, const std::string& here, bool is_met) {

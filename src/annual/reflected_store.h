@@ -26,7 +26,7 @@ PictureKey reflected_key(const std::string& program, const std::vector<LightPath
 // Not thread-safe.
 class ReflectedStore {
  public:
-  // Of `parts` processes, the one number `part` (from 1) computes each parts-th item.
+  // Process number `part` (from 1) of `parts` computes each parts-th item.
   explicit ReflectedStore(int part = 1, int parts = 1) : part_(part), parts_(parts) {}
 
   // Saves items to a file at intervals and in save(). warn: as Checkpoint.

@@ -135,7 +135,12 @@ std::unique_ptr<Integrator> cached_paths_if_cheaper(const MethodPlan& plan, cons
   const int most = most_by_paths(in.settings.most_viewing_rays);
   const PathForecast cached = forecast_paths(*cached_paths(in, cells, {}), *in.cells->view, error,
                                              most, in.cells->seed, in.cells->counters);
-  if (!cached.is_within(most)) return nullptr;
+  if (!cached.is_within(most)) {
+    in.cells->decisions.push_back(
+        {"paths that end at cells", "no",
+         fmt::format("they would take more than a quarter of {} viewing rays per pixel", most)});
+    return nullptr;
+  }
   const GatherTrial trial =
       try_gathers({gathers, reflected, *cells, *in.cells->view, gather_options(in, *cells),
                    std::max(in.settings.viewing_rays, 1), error, cached},

@@ -254,6 +254,7 @@ Surroundings look_around(const RefinementView& v, int x, int y, bool are_compara
 template <class Of>
 double variance_amid_clutter(const RefinementView& v, int x, int y, double of_slope, double noticed,
                              const Of& of) {
+  if (is_left_out<"clutter">()) return 0;
   constexpr int reach = 2;
   static_assert(reach <= PixelLooks::reach);
   constexpr double rays = 32;  // those of eight neighbours, four each
@@ -271,7 +272,6 @@ double variance_amid_clutter(const RefinementView& v, int x, int y, double of_sl
       ++varying;
       sum += variance;
     }
-  if (is_left_out<"clutter">()) return 0;
   constexpr double least = 0.25, full = 0.5;
   if (varying <= least * all) return 0;
   const double weight = std::min((double(varying) / all - least) / (full - least), 1.0);

@@ -128,8 +128,8 @@ TEST_CASE("an unfinished folder leaves nothing") {
   CHECK(!fs::exists(folder.path()));
 }
 
-// As numpy.savetxt(file, array, fmt='%.7e', delimiter='\t') in honeybee-radiance-postprocess, from
-// which numpy.loadtxt gives back every float.
+// The format is that of numpy.savetxt(file, array, fmt='%.7e', delimiter='\t') in
+// honeybee-radiance-postprocess. numpy.loadtxt reads every float back from it.
 TEST_CASE("text arrays hold the same numbers as binary ones") {
   CHECK(ill_row(std::vector<float>{0, 1234.5f, 0.03125f}) ==
         "0.0000000e+00\t1.2345000e+03\t3.1250000e-02\n");

@@ -92,7 +92,8 @@ TEST_CASE("a floor keeps its light at the foot of walls that reach the ceiling")
       CHECK(light_on_floor(r, 3.895, 2) == doctest::Approx(458.6).epsilon(0.06));
       CHECK(light_on_floor(r, 3.88, 2) == doctest::Approx(463.6).epsilon(0.06));
       if (resolution < 256) continue;
-      // By paths, ± .4. A row of texels of 32 samples has a standard error of .4 %.
+      // Path tracing gives these values ± .4. The mean of a row of texels with 32 samples each has
+      // a standard error of .4 %.
       CHECK(mean_along_wall(r, 3.895) == doctest::Approx(422.6).epsilon(0.016));
       CHECK(mean_along_wall(r, 3.88) == doctest::Approx(426.9).epsilon(0.016));
     }
