@@ -3,6 +3,8 @@
 // accurate, because its light is attenuated and averaged.
 #pragma once
 
+#include <memory>
+
 #include "transport/direct_light.h"
 
 namespace troffer {
@@ -10,7 +12,7 @@ namespace troffer {
 class StagedDirect final : public DirectLight {
  public:
   // Both must have the same walked_part(). samples: number of first samples of a pixel.
-  StagedDirect(std::unique_ptr<DirectLight> first, std::unique_ptr<DirectLight> later,
+  StagedDirect(std::shared_ptr<const DirectLight> first, std::shared_ptr<const DirectLight> later,
                uint32_t samples);
 
   std::unique_ptr<DirectLightScratch> make_scratch() const override;
@@ -29,7 +31,7 @@ class StagedDirect final : public DirectLight {
   }
   void take(const WaveHits& wave, bool first, WaveHits& out) const;
 
-  std::unique_ptr<DirectLight> first_, later_;
+  std::shared_ptr<const DirectLight> first_, later_;
   uint32_t samples_;
 };
 

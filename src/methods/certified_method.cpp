@@ -62,38 +62,6 @@ std::shared_ptr<const GatherRecords> gather(const MethodInput& in, const Cells& 
                              part_of_progress(in, 0.4, 1), in.cells->stop, in.cells->counters);
 }
 
-// One stage of direct light and its settings.
-struct Stage {
-  std::unique_ptr<DirectLight>& direct;
-  CertifiedSettings settings;
-};
-// Adds lights seen in flat mirrors to all given stages, which share the images.
-void add_images(const MethodInput& in, std::initializer_list<Stage> stages) {
-  const std::shared_ptr<const MirrorImages> images = MirrorImages::make(in.scene);
-  if (!images) return;
-  std::vector<std::shared_ptr<const Occluders>> occluders;
-  for (const MirrorImages::Image& image : images->all())
-    occluders.push_back(std::make_shared<const Occluders>(image.scene->scene, &image.scene->glass));
-  for (const Stage& s : stages)
-    if (s.direct)
-      s.direct = std::make_unique<ImagedDirect>(std::move(s.direct), images, occluders, s.settings);
-}
-
-// Makes an integrator of the same light by few draws of lights and few gather rays.
-std::unique_ptr<Integrator> make_quick(const MethodInput& in,
-                                       const std::shared_ptr<const Occluders>& occluders,
-                                       const std::shared_ptr<const Cells>& cells,
-                                       const std::shared_ptr<const GatherRecords>& records) {
-  constexpr int few_draws = 4;  // a power of two: stratified best
-  CertifiedSettings settings = settings_beyond_first(in);
-  settings.draws = few_draws;
-  std::unique_ptr<DirectLight> direct =
-      std::make_unique<CertifiedDirect>(in.scene, occluders, settings);
-  add_images(in, {{direct, settings}});
-  return std::make_unique<WaveIntegrator>(in.scene, std::move(direct),
-                                          std::make_unique<CellsIndirect>(cells, records));
-}
-
 // Returns the occluders for certificates: those of the scene, or none if no light can have a
 // certificate.
 std::shared_ptr<const Occluders> occluders_for(const MethodInput& in) {
@@ -103,6 +71,39 @@ std::shared_ptr<const Occluders> occluders_for(const MethodInput& in) {
   });
   if (!is_asked) return std::make_shared<const Occluders>(Scene());
   return std::make_shared<const Occluders>(in.scene.scene, &in.scene.glass);
+}
+
+// What certificates are proved against: the scene, and its images in flat mirrors if there are any.
+struct Occlusion {
+  std::shared_ptr<const Occluders> scene;
+  std::shared_ptr<const MirrorImages> images;
+  std::vector<std::shared_ptr<const Occluders>> of_images;
+};
+Occlusion occlusion_for(const MethodInput& in, bool has_images) {
+  Occlusion o{occluders_for(in), has_images ? MirrorImages::make(in.scene) : nullptr, {}};
+  if (o.images)
+    for (const MirrorImages::Image& image : o.images->all())
+      o.of_images.push_back(
+          std::make_shared<const Occluders>(image.scene->scene, &image.scene->glass));
+  return o;
+}
+
+std::unique_ptr<DirectLight> make_direct(const MethodInput& in, const Occlusion& by,
+                                         const CertifiedSettings& settings) {
+  auto direct = std::make_unique<CertifiedDirect>(in.scene, by.scene, settings);
+  if (!by.images) return direct;
+  return std::make_unique<ImagedDirect>(std::move(direct), by.images, by.of_images, settings);
+}
+
+// Makes an integrator of the same light by few draws of lights and few gather rays.
+std::unique_ptr<Integrator> make_quick(const MethodInput& in, const Occlusion& by,
+                                       const std::shared_ptr<const Cells>& cells,
+                                       const std::shared_ptr<const GatherRecords>& records) {
+  constexpr int few_draws = 4;  // a power of two: stratified best
+  CertifiedSettings settings = settings_beyond_first(in);
+  settings.draws = few_draws;
+  return std::make_unique<WaveIntegrator>(in.scene, make_direct(in, by, settings),
+                                          std::make_unique<CellsIndirect>(cells, records));
 }
 
 // Makes a path tracer that samples as the forecast says, or to the usual number of samples.
@@ -124,78 +125,129 @@ std::unique_ptr<Integrator> cached_paths(const MethodInput& in,
       in.scene, PathOptions{in.settings.depth, false, sampling, false, nullptr, cells});
 }
 
-// Returns a path tracer that ends at the cells if test paths show that it costs less than path
-// tracing, and than gathers in a few windows of the picture; null otherwise. gathers: the
-// integrator that reads the records of `reflected`.
-std::unique_ptr<Integrator> cached_paths_if_cheaper(const MethodPlan& plan, const MethodInput& in,
-                                                    const std::shared_ptr<const Cells>& cells,
-                                                    const Integrator& gathers,
-                                                    CellsIndirect& reflected) {
+// A picture by gathers, before they are made.
+struct GatheredPicture {
+  std::unique_ptr<Integrator> integrator;
+  CellsIndirect* reflected = nullptr;  // of the integrator
+};
+GatheredPicture make_gathered(const MethodInput& in, const std::shared_ptr<const Cells>& cells,
+                              std::shared_ptr<const DirectLight> first,
+                              std::shared_ptr<const DirectLight> further) {
+  constexpr auto all = std::numeric_limits<uint32_t>::max();
+  const bool is_picture = in.cells->view != nullptr;
+  const uint32_t samples = is_picture ? uint32_t(in.settings.viewing_rays) : all;
+  auto indirect = std::make_unique<CellsIndirect>(cells, nullptr);
+  CellsIndirect* const reflected = indirect.get();
+  return {
+      std::make_unique<WaveIntegrator>(
+          in.scene, std::make_unique<StagedDirect>(std::move(first), std::move(further), samples),
+          std::move(indirect), false, is_picture ? cached_paths(in, cells, {}) : nullptr),
+      reflected};
+}
+
+// Ways to compute a picture whose cells are made.
+enum class CellWay : uint8_t { gathers, cached_paths, paths };
+
+// Returns the way of least cost. Path tracing is the best known of the three, so the others have to
+// promise more than the uncertainty of costs.
+CellWay cheapest_way(const MethodPlan& plan, const PathForecast& cached, bool is_cached_possible,
+                     double of_gathers) {
+  constexpr double uncertainty = 1.25;  // factor of spread that bench/costs prints
+  const bool is_cached = is_cached_possible && cached.rays < of_gathers;
+  const double least = is_cached ? cached.rays : of_gathers;
+  if (plan.forecast && plan.forecast->rays < uncertainty * least) return CellWay::paths;
+  return is_cached ? CellWay::cached_paths : CellWay::gathers;
+}
+
+// Adds the choice and its reasons to the decisions.
+void tell_choice(const MethodPlan& plan, const MethodInput& in, CellWay way,
+                 const PathForecast& cached, bool is_cached_possible, const GatherTrial& trial) {
+  const size_t best = trial.best();
+  if (trial.costs.size() > 1)
+    in.cells->decisions.push_back(
+        {"direct light of first viewing rays", best == 0 ? "certificates" : "light samples",
+         fmt::format("by certificates {:.3g} million rays in all, by samples {:.3g} million",
+                     trial.costs[0].all * 1e-6, trial.costs[1].all * 1e-6)});
+  if (!plan.may_end_paths_at_cells) return;
+  std::string reason =
+      is_cached_possible
+          ? fmt::format("they would take {:.3g} viewing rays per pixel and {:.3g} million rays",
+                        cached.viewing_rays, cached.rays * 1e-6)
+          : fmt::format("they would take more than a quarter of {} viewing rays per pixel",
+                        most_by_paths(in.settings.most_viewing_rays));
+  if (!trial.costs.empty())
+    reason += fmt::format(
+        "; gathers {:.3g} million, of which {:.3g} to gather and {:.3g} for first viewing rays",
+        trial.costs[best].all * 1e-6, trial.of_gathers * 1e-6, trial.costs[best].of_first * 1e-6);
+  in.cells->decisions.push_back({"paths that end at cells",
+                                 way == CellWay::cached_paths ? "for the whole picture" : "no",
+                                 std::move(reason)});
+  if (way == CellWay::paths)
+    in.cells->decisions.push_back(
+        {"all light", "path tracing instead", "cells would not clearly cost less"});
+}
+
+// Returns path tracing, plain or to the first cell, if test paths and gathers in a few windows of
+// the picture show that it costs less; null otherwise. The first of the gathered pictures then is
+// the one that costs least.
+std::unique_ptr<Integrator> paths_if_cheaper(const MethodPlan& plan, const MethodInput& in,
+                                             const std::shared_ptr<const Cells>& cells,
+                                             std::vector<GatheredPicture>& gathered) {
   const double error = error_by_paths(in.settings.error);
   const int most = most_by_paths(in.settings.most_viewing_rays);
   const PathForecast cached = forecast_paths(*cached_paths(in, cells, {}), *in.cells->view, error,
                                              most, in.cells->seed, in.cells->counters);
-  if (!cached.is_within(most)) {
-    in.cells->decisions.push_back(
-        {"paths that end at cells", "no",
-         fmt::format("they would take more than a quarter of {} viewing rays per pixel", most)});
-    return nullptr;
-  }
+  std::vector<GatherCandidate> candidates;
+  for (const GatheredPicture& g : gathered) candidates.push_back({*g.integrator, *g.reflected});
   const GatherTrial trial =
-      try_gathers({gathers, reflected, *cells, *in.cells->view, gather_options(in, *cells),
+      try_gathers({candidates, *cells, *in.cells->view, gather_options(in, *cells),
                    std::max(in.settings.viewing_rays, 1), error, cached},
                   in.cells->stop, in.cells->counters);
-  const bool is_cheaper =
-      cached.rays < trial.cost && (!plan.forecast || cached.rays < plan.forecast->rays);
-  std::string reason =
-      fmt::format("they would take {:.3g} viewing rays per pixel and {:.3g} million rays",
-                  cached.viewing_rays, cached.rays * 1e-6);
-  if (trial.cost > 0)
-    reason += fmt::format(
-        "; gathers {:.3g} million, of which {:.3g} to gather and {:.3g} for first viewing rays",
-        trial.cost * 1e-6, trial.of_gathers * 1e-6, trial.of_first * 1e-6);
-  in.cells->decisions.push_back(
-      {"paths that end at cells", is_cheaper ? "for the whole picture" : "no", std::move(reason)});
-  return is_cheaper ? cached_paths(in, cells, sampling_by_paths(cached, error, most)) : nullptr;
+  const size_t best = trial.best();
+  std::swap(gathered[0], gathered[best]);
+  if (trial.costs.empty()) return nullptr;
+  const bool is_cached_possible = plan.may_end_paths_at_cells && cached.is_within(most);
+  const CellWay way = cheapest_way(plan, cached, is_cached_possible, trial.costs[best].all);
+  tell_choice(plan, in, way, cached, is_cached_possible, trial);
+  switch (way) {
+    case CellWay::cached_paths:
+      return cached_paths(in, cells, sampling_by_paths(cached, error, most));
+    case CellWay::paths:
+      return make_paths(plan, in);
+    case CellWay::gathers:
+      break;
+  }
+  return nullptr;
 }
 
 // Makes cells and their gathers, then the integrator that reads them.
-std::unique_ptr<Integrator> make_by_cells(const MethodPlan& plan, const MethodInput& in,
-                                          const std::shared_ptr<const Occluders>& occluders,
-                                          std::unique_ptr<DirectLight> first) {
-  std::unique_ptr<DirectLight> at_cells =
-      std::make_unique<CertifiedDirect>(in.scene, occluders, plan.at_cells);
-  std::unique_ptr<DirectLight> further;
-  if (plan.further.draws > 0)
-    further = std::make_unique<CertifiedDirect>(in.scene, occluders, plan.further);
-  add_images(in, {{first, plan.first}, {at_cells, plan.at_cells}, {further, plan.further}});
-  const std::shared_ptr<const Cells> cells =
-      cells_of(plan, in, *at_cells, in.cells->view != nullptr ? 0.4 : 1);
+std::unique_ptr<Integrator> make_by_cells(const MethodPlan& plan, const MethodInput& in) {
+  const Occlusion by = occlusion_for(in, true);
+  std::shared_ptr<const DirectLight> at_cells = make_direct(in, by, plan.at_cells);
+  const bool is_picture = in.cells->view != nullptr;
+  const std::shared_ptr<const Cells> cells = cells_of(plan, in, *at_cells, is_picture ? 0.4 : 1);
   if (!cells) {
     if (!plan.forecast || in.cells->stop.load()) return nullptr;
     in.cells->decisions.push_back(
         {"all light", "path tracing instead", "there were more cells than planned"});
     return make_paths(plan, in);
   }
-  if (!further) further = std::move(at_cells);
-  constexpr auto all = std::numeric_limits<uint32_t>::max();
-  const bool is_picture = in.cells->view != nullptr;
-  const uint32_t samples = is_picture ? uint32_t(in.settings.viewing_rays) : all;
-  auto indirect = std::make_unique<CellsIndirect>(cells, nullptr);
-  CellsIndirect& reflected = *indirect;
-  auto gathers = std::make_unique<WaveIntegrator>(
-      in.scene, std::make_unique<StagedDirect>(std::move(first), std::move(further), samples),
-      std::move(indirect), false, is_picture ? cached_paths(in, cells, {}) : nullptr);
-  if (plan.may_end_paths_at_cells)
-    if (std::unique_ptr<Integrator> paths =
-            cached_paths_if_cheaper(plan, in, cells, *gathers, reflected))
+  const std::shared_ptr<const DirectLight> further =
+      plan.further.draws > 0 ? make_direct(in, by, plan.further) : std::move(at_cells);
+  std::vector<GatheredPicture> gathered;
+  gathered.push_back(make_gathered(in, cells, make_direct(in, by, plan.first), further));
+  if (is_picture && plan.first_by_samples.draws > 0)
+    gathered.push_back(
+        make_gathered(in, cells, make_direct(in, by, plan.first_by_samples), further));
+  if (is_picture)
+    if (std::unique_ptr<Integrator> paths = paths_if_cheaper(plan, in, cells, gathered))
       return paths;
   std::shared_ptr<const GatherRecords> records;
   if (is_picture) records = gather(in, *cells);
-  if (in.cells->enough != nullptr) in.cells->quick = make_quick(in, occluders, cells, records);
+  if (in.cells->enough != nullptr) in.cells->quick = make_quick(in, by, cells, records);
   if (is_picture && !records) return nullptr;
-  reflected.set_records(std::move(records));
-  return gathers;
+  gathered[0].reflected->set_records(std::move(records));
+  return std::move(gathered[0].integrator);
 }
 
 }  // namespace
@@ -215,29 +267,28 @@ std::unique_ptr<Integrator> make_cached_path(const MethodPlan& plan, const Metho
 }
 
 std::unique_ptr<Integrator> make_certified(const MethodPlan& plan, const MethodInput& in) {
-  if (plan.light == PlannedLight::path_tracing) return make_paths(plan, in);
-  const std::shared_ptr<const Occluders> occluders = occluders_for(in);
-  std::unique_ptr<DirectLight> first =
-      std::make_unique<CertifiedDirect>(in.scene, occluders, plan.first);
   switch (plan.light) {
+    case PlannedLight::path_tracing:
+      return make_paths(plan, in);
     case PlannedLight::cells:
-      return make_by_cells(plan, in, occluders, std::move(first));
+      return make_by_cells(plan, in);
     case PlannedLight::sensor_paths: {
-      add_images(in, {{first, plan.first}});
+      std::unique_ptr<DirectLight> first = make_direct(in, occlusion_for(in, true), plan.first);
       auto reflected = std::make_unique<PathsIndirect>(in.scene, first->images());
       return std::make_unique<WaveIntegrator>(in.scene, std::move(first), std::move(reflected));
     }
     case PlannedLight::staged_direct: {
-      auto further = std::make_unique<CertifiedDirect>(in.scene, occluders, plan.further);
+      const Occlusion by = occlusion_for(in, false);
       return std::make_unique<WaveIntegrator>(
           in.scene,
-          std::make_unique<StagedDirect>(std::move(first), std::move(further),
+          std::make_unique<StagedDirect>(make_direct(in, by, plan.first),
+                                         make_direct(in, by, plan.further),
                                          uint32_t(in.settings.viewing_rays)),
           nullptr, true);
     }
     case PlannedLight::direct:
-      return std::make_unique<WaveIntegrator>(in.scene, std::move(first), nullptr);
-    case PlannedLight::path_tracing:
+      return std::make_unique<WaveIntegrator>(
+          in.scene, make_direct(in, occlusion_for(in, false), plan.first), nullptr);
     case PlannedLight::radiosity:
       break;
   }

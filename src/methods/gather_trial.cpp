@@ -18,6 +18,12 @@ namespace {
 constexpr int side = GatherRecords::tile_side;
 // A trial looks at no more than this share of the picture, unless one window is more.
 constexpr double most_share = 0.125;
+// Viewing rays per pixel that a trial traces. More would tell little about a pixel's variance.
+constexpr int most_tried = 16;
+
+int tried_rays(const GatherTrialInput& in) {
+  return std::min(in.viewing_rays, most_tried);
+}
 
 // Rows and columns of windows, spread evenly over the picture.
 struct Windows {
@@ -41,7 +47,7 @@ PixelWindow window_of(const PixelWindow& image, const Windows& windows, int i) {
   return {x, y, x + side, y + side};
 }
 
-// Returns the first viewing rays of all pixels of a window.
+// Returns first viewing rays of all pixels of a window.
 ViewingRays rays_of(const PictureView& view, const GatherTrialInput& in) {
   ViewingRays rays;
   rays.request.is_picture = true;
@@ -50,7 +56,7 @@ ViewingRays rays_of(const PictureView& view, const GatherTrialInput& in) {
     for (int x = view.window.x0; x < view.window.x1; ++x) {
       const uint64_t stream =
           hash_of(in.options.seed, uint64_t(x), uint64_t(y), stream::gather_trial);
-      for (int k = 0; k < in.viewing_rays; ++k) {
+      for (int k = 0; k < tried_rays(in); ++k) {
         const Vec2 place = SobolGroup(stream, purpose_camera, uint32_t(k)).get2(0);
         rays.rays.push_back(view.ray(float(x) + place.x, float(y) + place.y));
         rays.streams.push_back(stream);
@@ -65,7 +71,7 @@ ViewingRays rays_of(const PictureView& view, const GatherTrialInput& in) {
 // Returns the variance of one ray of each pixel over its squared allowed error, without the known
 // part of its light, which surrogate samples resolve.
 std::vector<double> own_wanted(const RadianceBatch& seen, const GatherTrialInput& in) {
-  const auto n = size_t(in.viewing_rays);
+  const auto n = size_t(tried_rays(in));
   const auto luminance_of = [](const Rgb& l) { return is_finite(l) ? double(luminance(l)) : 0; };
   std::vector<double> own;
   for (size_t first = 0; first + n <= seen.direct.size(); first += n) {
@@ -120,7 +126,34 @@ double cost_of_further(const std::vector<double>& wanted, double of_first,
   return sum / double(wanted.size());
 }
 
+// Sums over the windows for one candidate.
+struct CandidateSums {
+  double of_first = 0;         // cost of the first viewing rays
+  std::vector<double> wanted;  // rays of each pixel, if it were alone
+};
+
+// Traces the first viewing rays of a window by one candidate.
+void add_first_rays(const PictureView& view, const GatherTrialInput& in,
+                    const Integrator& integrator, CandidateSums& sums, Counters& counters) {
+  Counters own;
+  const ViewingRays rays = rays_of(view, in);
+  const std::unique_ptr<IntegratorScratch> scratch = integrator.make_scratch();
+  RadianceBatch out;
+  out.reset(rays.size());
+  out.known.assign(rays.size(), {});
+  integrator.radiance(rays, *scratch, out, own);
+  sums.of_first += cost_of(own);
+  counters += own;
+  add_wanted(own_wanted(out, in), sums.wanted);
+}
+
 }  // namespace
+
+size_t GatherTrial::best() const {
+  const auto least = std::min_element(costs.begin(), costs.end(),
+                                      [](const Cost& a, const Cost& b) { return a.all < b.all; });
+  return least == costs.end() ? 0 : size_t(least - costs.begin());
+}
 
 GatherTrial try_gathers(const GatherTrialInput& in, const StopFlag& stop, Counters& counters) {
   GatherOptions options = in.options;
@@ -132,32 +165,29 @@ GatherTrial try_gathers(const GatherTrialInput& in, const StopFlag& stop, Counte
                looked_at = windows.count() * side * side;
   GatherTrial trial;
   if (image.width() < side || image.height() < side) return trial;
-  double of_gathers = 0, of_first = 0;
-  std::vector<double> wanted;
+  std::vector<CandidateSums> sums(in.candidates.size());
+  double of_gathers = 0;
   for (int i = 0; i < windows.count(); ++i) {
     PictureView view = in.view;
     view.window = window_of(image, windows, i);
-    Counters gathering, first;
-    std::shared_ptr<const GatherRecords> records =
+    Counters gathering;
+    const std::shared_ptr<const GatherRecords> records =
         GatherRecords::make(in.cells, view, options, nullptr, stop, gathering);
     if (!records) return trial;
-    in.reflected.set_records(std::move(records));
-    const ViewingRays rays = rays_of(view, in);
-    const std::unique_ptr<IntegratorScratch> scratch = in.gathers.make_scratch();
-    RadianceBatch out;
-    out.reset(rays.size());
-    out.known.assign(rays.size(), {});
-    in.gathers.radiance(rays, *scratch, out, first);
     of_gathers += cost_of(gathering);
-    of_first += cost_of(first);
     counters += gathering;
-    counters += first;
-    add_wanted(own_wanted(out, in), wanted);
+    for (size_t k = 0; k < sums.size(); ++k) {
+      in.candidates[k].reflected.set_records(records);
+      add_first_rays(view, in, in.candidates[k].integrator, sums[k], counters);
+    }
   }
   trial.of_gathers = of_gathers / looked_at * pixels;
-  trial.of_first = of_first / looked_at * pixels;
-  trial.cost = trial.of_gathers + trial.of_first +
-               pixels * cost_of_further(wanted, of_first / looked_at / in.viewing_rays, in);
+  for (const CandidateSums& s : sums) {
+    const double of_ray = s.of_first / looked_at / tried_rays(in),
+                 of_first = of_ray * in.viewing_rays * pixels;
+    trial.costs.push_back(
+        {trial.of_gathers + of_first + pixels * cost_of_further(s.wanted, of_ray, in), of_first});
+  }
   return trial;
 }
 

@@ -147,4 +147,35 @@ TEST_CASE("a small address space is enough") {
 #endif
 }
 
+TEST_CASE("memory does not grow with the number of rays that are asked for") {
+#if !defined(__SANITIZE_ADDRESS__)
+  const Folder folder;
+  folder.write("rough.ply", rough_ply(20));
+  const std::string scene =
+      folder.write("s.pbrt", scene_with("AttributeBegin\nTranslate 0 0 2.5\nAreaLightSource "
+                                        "\"diffuse\" \"rgb L\" [12 11 10]\nShape \"disk\" "
+                                        "\"float radius\" .3\nAttributeEnd\n"));
+  const std::string points = folder.write("p.csv", "0,0,1,0,0,1\n");
+  using Words = std::vector<std::string>;
+  const Words render{"render", scene, "-o", folder.path("o.exr"), "--size", "48x32"},
+      measure{"measure", scene, "--points", points, "-o", folder.path("o.csv")};
+  for (const std::string method : {"certified", "cached-path", "path", "kj92", "radiosity"})
+    for (Words words : {render, measure}) {
+      if (method == "radiosity" && words == measure) continue;
+      words.insert(words.end(), {"--method", method, "--spp", "1000000", "--time-limit", "0.5",
+                                 "--threads", "1", "--quiet"});
+      Running run(folder, words, [] {
+        const rlimit limit{rlim_t{1} << 30, rlim_t{1} << 30};
+        setrlimit(RLIMIT_AS, &limit);
+      });
+      const Finished f = run.wait();
+      CAPTURE(words[0]);
+      CAPTURE(method);
+      CAPTURE(f.err);
+      CHECK(f.status == 0);
+      CHECK(f.processor_seconds < 20);
+    }
+#endif
+}
+
 }  // namespace test_memory

@@ -11,19 +11,27 @@ using namespace troffer::test;
 
 namespace {
 
-// Returns the decision between gathers and cached paths.
-PlannedPart decision_of(const RenderResult& r) {
+// Returns a decision by its name: by default that between gathers and cached paths.
+PlannedPart decision_of(const RenderResult& r, const char* part = "paths that end at cells") {
   for (const PlannedPart& p : r.statistics.plan.parts)
-    if (p.part == "paths that end at cells") return p;
+    if (p.part == part) return p;
   return {};
 }
 
-// Renders a matte room with a lamp in view.
-RenderResult matte_room(int width, int height, float error) {
+// Renders a matte room with a lamp in view, and with so many small plates below it in each
+// direction.
+RenderResult matte_room(int width, int height, float error, int plates = 0) {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f});
   add_box_inside(s, grey, {-2, -2, 0}, {2, 2, 2.5f});
   add_ceiling_light(s, 1, 2.4f, Rgb{10});
+  const float size = 2.0f / float(std::max(plates, 1));
+  for (int j = 0; j < plates; ++j)
+    for (int i = 0; i < plates; ++i) {
+      const float x = -1 + size * float(i), y = -1 + size * float(j), side = 0.6f * size,
+                  z = 1.5f + 0.3f * float((i * 7 + j * 5) % 8) / 8;
+      add_quad(s, grey, {{{x, y, z}, {x + side, y, z}, {x + side, y + side, z}, {x, y + side, z}}});
+    }
   const PreparedScene scene(std::move(s));
   RenderOptions o;
   o.indirect = Indirect::automatic;
@@ -53,4 +61,10 @@ TEST_CASE("gathers: what surrogate samples resolve does not count as noise") {
 
 TEST_CASE("gathers: small pictures, too, compare them with cached paths") {
   CHECK(decision_of(matte_room(32, 24, 0.02f)).reason.find("gathers") != std::string::npos);
+}
+
+TEST_CASE("first viewing rays take light samples where certificates would cost more") {
+  const char* part = "direct light of first viewing rays";
+  CHECK(decision_of(matte_room(64, 48, 0.05f), part).choice == "certificates");
+  CHECK(decision_of(matte_room(64, 48, 0.05f, 24), part).choice == "light samples");
 }
