@@ -69,6 +69,7 @@ class AnnualCalculation {
   bool reflect() {
     ErrorSums sums;
     if (!reflect_families(share_of_reflected)) return false;
+    subtract_fixed();
     for (size_t k = 0; k < states_.size(); ++k) {
       const LitState& state = states_[k];
       for (const ReflectedReplicate& r : state.reflected) {
@@ -156,33 +157,62 @@ class AnnualCalculation {
     }
     return true;
   }
+  // Light by windows outside of all groups enters in every state, but counts once, in the first
+  // one. What it brings there is subtracted in all states of groups. Otherwise it counted once per
+  // group.
+  bool has_fixed() const {
+    return request_.paths[0].name == static_path && request_.paths.size() > 1;
+  }
+  bool is_of_group(size_t state) const { return has_fixed() && state >= states_.first_of(1); }
+  void subtract_fixed() {
+    for (size_t k = 0; k < states_.size(); ++k)
+      for (size_t r = 0; is_of_group(k) && r < states_[k].reflected.size(); ++r) {
+        const std::vector<float>& fixed = states_[0].reflected[r].coefficients;
+        std::vector<float>& of_state = states_[k].reflected[r].coefficients;
+        for (size_t i = 0; i < of_state.size(); ++i) of_state[i] -= fixed[i];
+      }
+  }
+  // Calls visit(family, rays, fixed) for all families. fixed: what to subtract in states of groups.
+  template <class Visit>
+  void visit_rays(size_t sensor, DirectRays::Parts parts, const Visit& visit) const {
+    std::vector<float> fixed;
+    for (const StateFamily& family : families_) {
+      const DirectRays rays(outside_, family, sensor, parts);
+      if (fixed.empty() && has_fixed()) fixed = rays.open_in(family.states[0]);
+      visit(family, rays, std::span<const float>(fixed));
+    }
+  }
   // Finds the sun of a sensor in the first and the last state of every path.
   void find_sun(size_t sensor, std::vector<SunOfPath>& sun) const {
-    for (const StateFamily& family : families_) {
-      const DirectRays rays(outside_, family, sensor, DirectRays::Parts::sun);
+    const auto visit = [&](const StateFamily& family, const DirectRays& rays,
+                           std::span<const float> fixed) {
       for (const StateOfFamily& state : family.states)
         for (size_t p = 0; p < sun.size(); ++p) {
           const bool is_first = state.number == states_.first_of(p);
           const bool is_last = state.number + 1 == states_.first_of(p + 1);
           if (!is_first && !is_last) continue;
-          std::vector<SunHour> hours = rays.sun_in(state);
+          std::vector<SunHour> hours =
+              rays.sun_in(state, is_of_group(state.number) ? fixed : std::span<const float>());
           if (is_first) sun[p].open[sensor] = hours;
           if (is_last) sun[p].closed[sensor] = std::move(hours);
         }
-    }
+    };
+    visit_rays(sensor, DirectRays::Parts::sun, visit);
   }
   YearOfLight light_of(const LitState& state) const {
     return {*state.scene, outside_, state.reflected};
   }
   // Adds all hours of a sensor in the states of a family.
-  void add_hours(const StateFamily& family, size_t sensor, StateSums::Sensor& sum) const {
-    const DirectRays rays(outside_, family, sensor, DirectRays::Parts::all);
+  void add_hours(const StateFamily& family, const DirectRays& rays, std::span<const float> fixed,
+                 size_t sensor, StateSums::Sensor& sum) const {
     std::vector<YearOfLight> lights;
     std::vector<SensorHours> hours;
     lights.reserve(family.states.size());
     for (const StateOfFamily& s : family.states) {
       lights.push_back(light_of(states_[s.number]));
-      hours.emplace_back(lights.back(), sensor, family.sensors[sensor], rays, rays.open_in(s));
+      const auto subtracted = is_of_group(s.number) ? fixed : std::span<const float>();
+      hours.emplace_back(lights.back(), sensor, family.sensors[sensor], rays,
+                         rays.open_in(s, subtracted));
     }
     RunOfHours run;
     const size_t all = result_.skies.hours();
@@ -194,13 +224,23 @@ class AnnualCalculation {
       }
     }
   }
+  void add_glare(size_t sensor, StateSums::Sensor& sum) const {
+    std::vector<float> fixed;
+    for (size_t k = 0; k < states_.size(); ++k) {
+      std::vector<float> strengths =
+          glare_strengths(light_of(states_[k]), sensor, states_[k].hits[sensor]);
+      for (size_t h = 0; is_of_group(k) && h < strengths.size(); ++h) strengths[h] -= fixed[h];
+      sum.add_glare(k, strengths);
+      if (k == 0) fixed = std::move(strengths);
+    }
+  }
   // Computes all states of a sensor, and sets its figures.
   HoursOfSensor hours_of(const StateSums& sums, size_t sensor, ErrorSums& errors) {
     StateSums::Sensor sum = sums.begin();
-    for (const StateFamily& family : families_) add_hours(family, sensor, sum);
-    if (sensor >= request_.points.size() - request_.eyes)
-      for (size_t k = 0; k < states_.size(); ++k)
-        sum.add_glare(k, glare_strengths(light_of(states_[k]), sensor, states_[k].hits[sensor]));
+    visit_rays(sensor, DirectRays::Parts::all,
+               [&](const StateFamily& family, const DirectRays& rays,
+                   std::span<const float> fixed) { add_hours(family, rays, fixed, sensor, sum); });
+    if (sensor >= request_.points.size() - request_.eyes) add_glare(sensor, sum);
     const HoursOfSensor means = sum.means(errors);
     const std::vector<float> open = sum.mean_open();
     const auto figures = [&](const HoursOfFigures& hours) {

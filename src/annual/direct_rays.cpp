@@ -86,26 +86,30 @@ void DirectRays::trace() {
   receive();
 }
 
-std::vector<float> DirectRays::open_in(const StateOfFamily& state) const {
+std::vector<float> DirectRays::open_in(const StateOfFamily& state,
+                                       std::span<const float> fixed) const {
   std::vector<float> open = open_;
-  if (&state == &family_.states[0]) return open;
-  const std::vector<uint32_t>& crossing = of_region_[state.region];
-  OpenRays rays(state.scene->tracer);
-  for (const uint32_t i : crossing) rays.add(place_, rays_[i].direction);
-  rays.trace();
-  for (size_t k = 0; k < crossing.size(); ++k) open[crossing[k]] = luminance(rays[k]);
+  if (&state != &family_.states[0]) {
+    const std::vector<uint32_t>& crossing = of_region_[state.region];
+    OpenRays rays(state.scene->tracer);
+    for (const uint32_t i : crossing) rays.add(place_, rays_[i].direction);
+    rays.trace();
+    for (size_t k = 0; k < crossing.size(); ++k) open[crossing[k]] = luminance(rays[k]);
+  }
+  for (size_t i = 0; i < fixed.size(); ++i) open[i] -= fixed[i];
   return open;
 }
 
-std::vector<SunHour> DirectRays::sun_in(const StateOfFamily& state) const {
-  const std::vector<float> open = open_in(state);
+std::vector<SunHour> DirectRays::sun_in(const StateOfFamily& state,
+                                        std::span<const float> fixed) const {
+  const std::vector<float> open = open_in(state, fixed);
   std::vector<SunHour> hours;
   for (size_t i = 0; i < sun_hours_.size(); ++i) {
     const size_t ray = first_of_sun_ + i * replicates;
     const float lx = outside_.skies.sun_lx[sun_hours_[i]] * cosine(ray);
     float sum = 0;
     for (size_t r = 0; r < replicates; ++r) sum += lx * open[ray + r];
-    if (sum > 0) hours.push_back({sun_hours_[i], sum / float(replicates)});
+    if (sum != 0) hours.push_back({sun_hours_[i], sum / float(replicates)});
   }
   return hours;
 }

@@ -42,10 +42,11 @@ class DirectRays {
   // Cosine at the sensor; at most 0 for directions from which it gets no light.
   float cosine(size_t ray) const { return rays_[ray].cosine; }
   // Returns the transmittance of panes on each ray in a state, as luminance; 0 if something else is
-  // in the way.
-  std::vector<float> open_in(const StateOfFamily& state) const;
-  // Returns the hours in which the sun reaches the sensor straight: the mean of all replicates.
-  std::vector<SunHour> sun_in(const StateOfFamily& state) const;
+  // in the way. fixed: empty, or values to subtract.
+  std::vector<float> open_in(const StateOfFamily& state, std::span<const float> fixed = {}) const;
+  // Returns the hours in which the sun reaches the sensor straight, by open_in(): the mean of all
+  // replicates.
+  std::vector<SunHour> sun_in(const StateOfFamily& state, std::span<const float> fixed = {}) const;
 
  private:
   struct DirectRay {

@@ -95,7 +95,7 @@ void SensorHours::add_ground(const DirectRays& rays, std::span<const float> open
   size_t ray = rays.first_of_ground();
   for (const ReinhartPatch& p : skies.coarse.sky.patches())
     for (size_t r = 0; r < replicates; ++r, ++ray)
-      if (open[ray] > 0) sum[r] += open[ray] * rays.cosine(ray) * float(p.solid_angle);
+      if (open[ray] != 0) sum[r] += open[ray] * rays.cosine(ray) * float(p.solid_angle);
   add(skies.ground.data(), sum);
 }
 
@@ -107,7 +107,7 @@ void SensorHours::add_sun(const DirectRays& rays, std::span<const float> open) {
     bool is_lit = false;
     for (size_t r = 0; r < replicates; ++r, ++ray) {
       sun.lx[r] = lx * open[ray];
-      is_lit = is_lit || sun.lx[r] > 0;
+      is_lit = is_lit || sun.lx[r] != 0;
     }
     if (is_lit) suns_.push_back(sun);
   }

@@ -173,6 +173,28 @@ TEST_CASE("the same on a floor with gloss, by which rays reach windows") {
   compare_with_state_alone(paths, all, 2, 1);
 }
 
+// The northern wall is a window outside of all groups. Its light is in the scenes of all states.
+TEST_CASE("light of windows outside of all groups counts once") {
+  Scene scene = slatted_room(false);
+  std::erase_if(scene.meshes, [](const Mesh& m) { return m.name == "north"; });
+  const StatesRun apart = run(paths_of(scene), 1);
+  const StatesRun whole = run({{static_path, {state_of(scene, 0, 0)}}}, 2);
+  const Exposure sum = exposure_of(apart), light = exposure_of(whole);
+  CAPTURE(sum.mean);
+  CAPTURE(light.mean);
+  const double error = std::sqrt(sum.variance + light.variance);
+  CHECK(error < 0.02 * light.mean);
+  CHECK(std::abs(sum.mean - light.mean) < 4 * error + 0.01 * light.mean);
+  for (size_t s = 0; s < points.size(); ++s)
+    for (size_t h = 0; h < whole.sensors[s].sun.size(); ++h) {
+      const auto sun = double(whole.sensors[s].sun[h]);
+      CHECK(std::abs(double(apart.sensors[s].sun[h]) - sun) <= 0.1 * sun);  // penumbras differ
+      const std::vector<HoursOfState>& states = apart.sensors[s].states;
+      const float all = states[0].total[h] + states[1].total[h] + states[3].total[h];
+      CHECK(double(apart.sensors[s].total[h]) == doctest::Approx(double(all)).epsilon(1e-4));
+    }
+}
+
 TEST_CASE("direct rays that states share equal those of the scenes alone") {
   const std::vector<LightPath> paths = paths_of(slatted_room(false));
   const std::vector<StateFamily> families = LitStates(paths, points).families();
