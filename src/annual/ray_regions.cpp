@@ -14,8 +14,8 @@ namespace {
 // Boxes are wider than what they hold by this much, plus a share of their coordinates, so that rays
 // that touch a surface count as crossing.
 constexpr float margin_m = 1e-3f, margin_share = 1e-5f;
-// Boxes are merged while they are added if the area of the merged box is at most so many times that
-// of both.
+// Boxes are merged if the area of the merged box is at most so many times that of both: a few more
+// rays meet it, but each ray is compared with fewer boxes.
 constexpr float most_of_areas = 1.3f;
 // Boxes kept while others are added.
 constexpr size_t most_open = 24;
@@ -55,8 +55,15 @@ Box joined(Box a, const Box& b) {
   return a;
 }
 
-// Merges the two boxes whose merging adds least area.
-void merge_two(std::vector<Box>& boxes) {
+// True if a box around both is hardly larger than they are.
+bool are_neighbours(const Box& a, const Box& b) {
+  return area_of(joined(a, b)) <= most_of_areas * (area_of(a) + area_of(b));
+}
+
+// Merges the two boxes whose merging adds least area; only neighbours, unless it must. Returns
+// false if it did not.
+bool merge_two(std::vector<Box>& boxes, bool must) {
+  if (boxes.size() < 2) return false;
   size_t first = 0, second = 1;
   float least = std::numeric_limits<float>::infinity();
   for (size_t i = 0; i < boxes.size(); ++i)
@@ -68,8 +75,10 @@ void merge_two(std::vector<Box>& boxes) {
       first = i;
       second = k;
     }
+  if (!must && !are_neighbours(boxes[first], boxes[second])) return false;
   boxes[first].grow(boxes[second]);
   boxes.erase(boxes.begin() + std::ptrdiff_t(second));
+  return true;
 }
 
 // Sets out[i] to 1 if a ray meets box i. inverse: of the direction, finite.
@@ -163,17 +172,16 @@ std::optional<std::vector<Box>> SceneSurfaces::boxes_of_change(const SceneSurfac
 std::vector<Box> few_boxes(std::span<const Box> boxes, size_t most) {
   std::vector<Box> few;
   for (const Box& b : boxes) {
-    const auto fits = [&](const Box& f) {
-      return area_of(joined(f, b)) <= most_of_areas * (area_of(f) + area_of(b));
-    };
-    const auto at = std::find_if(few.begin(), few.end(), fits);
+    const auto at =
+        std::find_if(few.begin(), few.end(), [&](const Box& f) { return are_neighbours(f, b); });
     if (at != few.end())
       at->grow(b);
     else
       few.push_back(b);
-    if (few.size() > most_open) merge_two(few);
+    if (few.size() > most_open) merge_two(few, true);
   }
-  while (few.size() > most) merge_two(few);
+  while (merge_two(few, few.size() > most)) {
+  }
   return few;
 }
 

@@ -22,14 +22,17 @@ StateCells::StateCells(const TransportCells& shared, const PreparedScene& scene,
       places_(seed) {
   more_of_sensors_ = differences(shared.sensor_log(), shared.sensors().size(), threads, stop);
   near_ = map_.size();
+  // Rays of cells that sensors see start where sensors see them, as those of shared cells do.
+  trace_rows(rays, near_, 1, seed, threads, stop);
   more_of_rows_ = differences(shared.row_log(), shared.rows().size(), threads, stop);
-  trace_rows(rays, seed, threads, stop);
+  trace_rows(rays, most_transport_cells, most_cell_rounds, seed, threads, stop);
+  while (rows_.size() < map_.size()) rows_.add_empty();
   is_grey_ = shared.is_grey() && are_grey(rows_.cells) && are_grey(more_of_rows_.cells) &&
              are_grey(more_of_sensors_.cells);
 }
 
 // Returns the cell of each hit. Shared cells that reach into the region are none of the state's: a
-// surface of the state may divide them.
+// surface of the state may divide them. Own cells replace them.
 std::vector<uint32_t> StateCells::cells_of(const CellsSeen& seen) {
   std::vector<uint32_t> cells;
   for (const CellSeen& s : seen.seen) {
@@ -59,14 +62,16 @@ SightRows StateCells::differences(const RayLog& log, size_t rows, int threads,
   return log.differences(region_, after, rows);
 }
 
-void StateCells::trace_rows(const TransportRays& rays, uint64_t seed, int threads,
-                            const StopFlag& stop) {
+// Traces the rows of own cells below number `end_of_all`, and of those that they see, for so many
+// rounds.
+void StateCells::trace_rows(const TransportRays& rays, size_t end_of_all, int rounds, uint64_t seed,
+                            int threads, const StopFlag& stop) {
   CellsSeen seen;
   seen.keeps_escapes = true;
   Counters counters;
-  for (int round = 0; round < most_cell_rounds && !stop.load(); ++round) {
-    const size_t end = map_.size();
-    if (rows_.size() == end || end > most_transport_cells) break;
+  for (int round = 0; round < rounds && !stop.load(); ++round) {
+    const size_t end = std::min(map_.size(), end_of_all);
+    if (rows_.size() == end) break;
     while (rows_.size() < end && !stop.load()) {
       const size_t first = rows_.size();
       const CellTasks next(places_, first, std::min(end - first, cell_tasks_at_a_time));
@@ -76,7 +81,6 @@ void StateCells::trace_rows(const TransportRays& rays, uint64_t seed, int thread
       add_rows(seen, tasks, cells_of(seen), &scales, rows_);
     }
   }
-  while (rows_.size() < map_.size()) rows_.add_empty();
 }
 
 }  // namespace troffer

@@ -32,7 +32,8 @@ class StateCells {
 
  private:
   SightRows differences(const RayLog& log, size_t rows, int threads, const StopFlag& stop);
-  void trace_rows(const TransportRays& rays, uint64_t seed, int threads, const StopFlag& stop);
+  void trace_rows(const TransportRays& rays, size_t end_of_all, int rounds, uint64_t seed,
+                  int threads, const StopFlag& stop);
   std::vector<uint32_t> cells_of(const CellsSeen& seen);
 
   const TransportCells& shared_;
