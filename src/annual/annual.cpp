@@ -62,16 +62,16 @@ class AnnualCalculation {
         progress_(progress),
         stop_(stop),
         result_(result),
-        states_(request.paths, request.points) {}
+        outside_{request.year, result.skies, request.compass, options.seed},
+        states_(request.paths, request.points),
+        families_(states_.families()) {}
 
   bool reflect() {
     ErrorSums sums;
+    if (!reflect_families(share_of_reflected)) return false;
+    subtract_fixed();
     for (size_t k = 0; k < states_.size(); ++k) {
-      LitState& state = states_[k];
-      state.reflected = reflect(k, [&](double f) {
-        tell(share_of_reflected * (double(k) + f) / double(states_.size()));
-      });
-      if (state.reflected.size() < size_t(replicate_count)) return false;
+      const LitState& state = states_[k];
       for (const ReflectedReplicate& r : state.reflected) {
         result_.cells = std::max(result_.cells, r.cells);
         result_.links = std::max(result_.links, r.links);
@@ -85,13 +85,7 @@ class AnnualCalculation {
   }
 
   // Computes what is AnnualRequest::store's own share.
-  bool reflect_share() {
-    for (size_t k = 0; k < states_.size(); ++k)
-      if (reflect(k, [&](double f) { tell((double(k) + f) / double(states_.size())); }).size() <
-          size_t(replicate_count))
-        return false;
-    return true;
-  }
+  bool reflect_share() { return reflect_families(1); }
 
   bool operate_blinds() {
     if (options_.blinds == "open" || !has_several_states(request_.paths)) return true;
@@ -101,15 +95,15 @@ class AnnualCalculation {
       return true;
     }
     std::vector<SunOfPath> sun(request_.paths.size());
-    for (size_t p = 0; p < sun.size(); ++p) {
-      const size_t first = states_.first_of(p), last = states_.first_of(p + 1) - 1;
-      if (!trace_sun(first, sun[p].open)) return false;
-      if (first == last)
-        sun[p].closed = sun[p].open;
-      else if (!trace_sun(last, sun[p].closed))
-        return false;
-      tell(share_of_reflected + share_of_blinds * double(p + 1) / double(sun.size()));
+    for (SunOfPath& s : sun) {
+      s.open.resize(request_.points.size());
+      s.closed.resize(request_.points.size());
     }
+    parallel_for(request_.points.size(), options_.threads, [&](size_t s) {
+      if (!stop_.load()) find_sun(s, sun);
+    });
+    if (stop_.load()) return false;
+    tell(share_of_reflected + share_of_blinds);
     result_.schedule = lm83_schedule(request_.paths, sun, request_.grids, result_.skies.hours());
     return true;
   }
@@ -143,34 +137,110 @@ class AnnualCalculation {
   void tell(double fraction) const {
     if (progress_) progress_(fraction);
   }
-  std::vector<ReflectedReplicate> reflect(size_t k, const ProgressCallback& progress) const {
+  // Sets the reflected light of all states. share: of the progress.
+  bool reflect_families(double share) {
     ReflectedOptions o = reflected_options(options_, request_.points.size());
-    std::optional<KeptReplicates> keeper;
-    if (request_.store != nullptr) o.keeper = &keeper.emplace(*request_.store, k);
-    return reflected_light(*states_[k].scene, states_[k].hits, request_.year, request_.compass, o,
-                           progress, stop_);
+    o.keeper = request_.store;
+    size_t before = 0;
+    for (const StateFamily& family : families_) {
+      const size_t count = family.states.size();
+      const auto tell_part = [&](double f) {
+        tell(share * (double(before) + f * double(count)) / double(states_.size()));
+      };
+      std::vector<std::vector<ReflectedReplicate>> reflected =
+          reflected_light(family, request_.year, request_.compass, o, tell_part, stop_);
+      for (size_t i = 0; i < count; ++i) {
+        if (reflected[i].size() < size_t(replicate_count)) return false;
+        states_[family.states[i].number].reflected = std::move(reflected[i]);
+      }
+      before += count;
+    }
+    return true;
+  }
+  // Light by windows outside of all groups enters in every state, but counts once, in the first
+  // one. What it brings there is subtracted in all states of groups. Otherwise it counted once per
+  // group.
+  bool has_fixed() const {
+    return request_.paths[0].name == static_path && request_.paths.size() > 1;
+  }
+  bool is_of_group(size_t state) const { return has_fixed() && state >= states_.first_of(1); }
+  void subtract_fixed() {
+    for (size_t k = 0; k < states_.size(); ++k)
+      for (size_t r = 0; is_of_group(k) && r < states_[k].reflected.size(); ++r) {
+        const std::vector<float>& fixed = states_[0].reflected[r].coefficients;
+        std::vector<float>& of_state = states_[k].reflected[r].coefficients;
+        for (size_t i = 0; i < of_state.size(); ++i) of_state[i] -= fixed[i];
+      }
+  }
+  // Calls visit(family, rays, fixed) for all families. fixed: what to subtract in states of groups.
+  template <class Visit>
+  void visit_rays(size_t sensor, DirectRays::Parts parts, const Visit& visit) const {
+    std::vector<float> fixed;
+    for (const StateFamily& family : families_) {
+      const DirectRays rays(outside_, family, sensor, parts);
+      if (fixed.empty() && has_fixed()) fixed = rays.open_in(family.states[0]);
+      visit(family, rays, std::span<const float>(fixed));
+    }
+  }
+  // Finds the sun of a sensor in the first and the last state of every path.
+  void find_sun(size_t sensor, std::vector<SunOfPath>& sun) const {
+    const auto visit = [&](const StateFamily& family, const DirectRays& rays,
+                           std::span<const float> fixed) {
+      for (const StateOfFamily& state : family.states)
+        for (size_t p = 0; p < sun.size(); ++p) {
+          const bool is_first = state.number == states_.first_of(p);
+          const bool is_last = state.number + 1 == states_.first_of(p + 1);
+          if (!is_first && !is_last) continue;
+          std::vector<SunHour> hours =
+              rays.sun_in(state, is_of_group(state.number) ? fixed : std::span<const float>());
+          if (is_first) sun[p].open[sensor] = hours;
+          if (is_last) sun[p].closed[sensor] = std::move(hours);
+        }
+    };
+    visit_rays(sensor, DirectRays::Parts::sun, visit);
   }
   YearOfLight light_of(const LitState& state) const {
-    return {*state.scene,     request_.year,   result_.skies,
-            request_.compass, state.reflected, options_.seed};
+    return {*state.scene, outside_, state.reflected};
   }
-  bool trace_sun(size_t state, SunOfSensors& out) const {
-    const YearOfLight light = light_of(states_[state]);
-    out.resize(request_.points.size());
-    parallel_for(out.size(), options_.threads, [&](size_t s) {
-      if (!stop_.load()) out[s] = sun_of_sensor(light, s, states_[state].hits[s]);
-    });
-    return !stop_.load();
+  // Adds all hours of a sensor in the states of a family.
+  void add_hours(const StateFamily& family, const DirectRays& rays, std::span<const float> fixed,
+                 size_t sensor, StateSums::Sensor& sum) const {
+    std::vector<YearOfLight> lights;
+    std::vector<SensorHours> hours;
+    lights.reserve(family.states.size());
+    for (const StateOfFamily& s : family.states) {
+      lights.push_back(light_of(states_[s.number]));
+      const auto subtracted = is_of_group(s.number) ? fixed : std::span<const float>();
+      hours.emplace_back(lights.back(), sensor, family.sensors[sensor], rays,
+                         rays.open_in(s, subtracted));
+    }
+    RunOfHours run;
+    const size_t all = result_.skies.hours();
+    for (run.first = 0; run.first < all; run.first += RunOfHours::most) {
+      run.count = std::min(RunOfHours::most, all - run.first);
+      for (size_t i = 0; i < hours.size(); ++i) {
+        hours[i].compute(run);
+        sum.add(family.states[i].number, run);
+      }
+    }
+  }
+  void add_glare(size_t sensor, StateSums::Sensor& sum) const {
+    std::vector<float> fixed;
+    for (size_t k = 0; k < states_.size(); ++k) {
+      std::vector<float> strengths =
+          glare_strengths(light_of(states_[k]), sensor, states_[k].hits[sensor]);
+      for (size_t h = 0; is_of_group(k) && h < strengths.size(); ++h) strengths[h] -= fixed[h];
+      sum.add_glare(k, strengths);
+      if (k == 0) fixed = std::move(strengths);
+    }
   }
   // Computes all states of a sensor, and sets its figures.
   HoursOfSensor hours_of(const StateSums& sums, size_t sensor, ErrorSums& errors) {
     StateSums::Sensor sum = sums.begin();
-    const bool is_eye = sensor >= request_.points.size() - request_.eyes;
-    for (size_t k = 0; k < states_.size(); ++k) {
-      const YearOfLight light = light_of(states_[k]);
-      sum.add(k, sensor_hours(light, sensor, states_[k].hits[sensor]));
-      if (is_eye) sum.add_glare(k, glare_strengths(light, sensor, states_[k].hits[sensor]));
-    }
+    visit_rays(sensor, DirectRays::Parts::all,
+               [&](const StateFamily& family, const DirectRays& rays,
+                   std::span<const float> fixed) { add_hours(family, rays, fixed, sensor, sum); });
+    if (sensor >= request_.points.size() - request_.eyes) add_glare(sensor, sum);
     const HoursOfSensor means = sum.means(errors);
     const std::vector<float> open = sum.mean_open();
     const auto figures = [&](const HoursOfFigures& hours) {
@@ -187,7 +257,9 @@ class AnnualCalculation {
   const ProgressCallback& progress_;
   const StopFlag& stop_;
   AnnualResult& result_;
+  YearOutside outside_;
   LitStates states_;
+  std::vector<StateFamily> families_;
 };
 
 AnnualResult unfilled_result(const AnnualRequest& request, const AnnualOptions& options) {

@@ -36,11 +36,11 @@ class EyeCalculation {
         eye_(eye),
         place_(place),
         rays_(light.scene.tracer),
-        strengths_(light.skies.hours(), 0.0f) {
+        strengths_(light.outside.skies.hours(), 0.0f) {
     ahead_ = place.normal;
-    const Vec3 up(light.compass.up);
+    const Vec3 up(light.outside.compass.up);
     // An eye that looks straight up or down has north at the top.
-    const Vec3 top = std::abs(dot(ahead_, up)) > 0.999f ? Vec3(light.compass.north) : up;
+    const Vec3 top = std::abs(dot(ahead_, up)) > 0.999f ? Vec3(light.outside.compass.north) : up;
     above_ = normalize(top - ahead_ * dot(top, ahead_));
     right_ = cross(ahead_, above_);
   }
@@ -54,11 +54,11 @@ class EyeCalculation {
 
  private:
   Vec3 world(const Vec3d& d) const {
-    const Compass& c = light_.compass;
+    const Compass& c = light_.outside.compass;
     return Vec3(c.east * d.x + c.north * d.y + c.up * d.z);
   }
   Random random_of(uint64_t purpose) const {
-    return Random(hash_of(light_.seed, uint64_t(eye_), purpose));
+    return Random(hash_of(light_.outside.seed, uint64_t(eye_), purpose));
   }
   // 1 / P²; 0 behind the eye.
   double weight_of(const Vec3& d) const {
@@ -87,7 +87,7 @@ class EyeCalculation {
 
   void add_sky() {
     Random random = random_of(stream::annual_eye_sky);
-    const PatchHours& fine = light_.skies.fine;
+    const PatchHours& fine = light_.outside.skies.fine;
     for (size_t p = 0; p < fine.sky.size(); ++p) {
       const ReinhartPatch& patch = fine.sky.patches()[p];
       const double weight = weight_of(world(patch.centre()));
@@ -107,9 +107,10 @@ class EyeCalculation {
   void add_sun() {
     Random random = random_of(stream::annual_eye_sun);
     for (size_t h = 0; h < strengths_.size(); ++h) {
-      const auto lx = double(light_.skies.sun_lx[h]);
+      const auto lx = double(light_.outside.skies.sun_lx[h]);
       if (lx == 0) continue;
-      const Vec3 to_sun = world(direction_of(light_.year.steps[light_.skies.steps[h]].sun));
+      const Vec3 to_sun =
+          world(direction_of(light_.outside.year.steps[light_.outside.skies.steps[h]].sun));
       const double weight = weight_of(to_sun);
       if (weight == 0) continue;
       rays_.clear();
@@ -135,7 +136,7 @@ class EyeCalculation {
       Walk walk;
       walk.index = uint32_t(weights.size());
       walk.sample = walk.index;
-      walk.stream = hash_of(light_.seed, uint64_t(eye_), stream::annual_eye_walks);
+      walk.stream = hash_of(light_.outside.seed, uint64_t(eye_), stream::annual_eye_walks);
       set_out(place_, way, walk);
       weights.push_back(weight_of(way) * p.solid_angle);
       if (!walk.throughput.is_black()) scratch.walks.push_back(walk);
@@ -148,9 +149,10 @@ class EyeCalculation {
   void add_arrivals(const std::vector<GatherArrival>& arrivals, const std::vector<double>& weights,
                     Random& random) {
     for (size_t h = 0; h < strengths_.size(); ++h) {
-      const auto lx = double(light_.skies.sun_lx[h]);
+      const auto lx = double(light_.outside.skies.sun_lx[h]);
       if (lx == 0) continue;
-      const Vec3 to_sun = world(direction_of(light_.year.steps[light_.skies.steps[h]].sun));
+      const Vec3 to_sun =
+          world(direction_of(light_.outside.year.steps[light_.outside.skies.steps[h]].sun));
       rays_.clear();
       sent_.clear();
       for (size_t i = 0; i < arrivals.size(); ++i) {

@@ -2,10 +2,11 @@
 
 namespace troffer {
 
-void OpenRays::add(const CellHit& from, const Vec3& direction) {
+const Ray& OpenRays::add(const CellHit& from, const Vec3& direction) {
   Ray& r = rays_.emplace_back();
   r.origin = from.position + from.horizon * from.offset;
   r.direction = direction;
+  return r;
 }
 
 void OpenRays::trace() {

@@ -12,12 +12,15 @@ namespace troffer {
 
 class OpenRays {
  public:
+  static constexpr size_t enough = 4096;  // rays that callers collect before they trace them
+
   explicit OpenRays(const Tracer& tracer) : tracer_(tracer) {}
 
   void clear() { rays_.clear(); }
   size_t size() const { return rays_.size(); }
-  // Adds a ray from a place towards a unit direction above its horizon.
-  void add(const CellHit& from, const Vec3& direction);
+  // Adds a ray from a place towards a unit direction above its horizon. Returns it.
+  const Ray& add(const CellHit& from, const Vec3& direction);
+  void add(const Ray& ray) { rays_.push_back(ray); }
   // Traces the rays.
   void trace();
   // Transmittance of the panes on a ray, or black if something else is in the way.

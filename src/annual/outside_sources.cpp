@@ -1,6 +1,9 @@
 #include "annual/outside_sources.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "base/frame.h"
 #include "base/units.h"
@@ -54,11 +57,25 @@ float OutsideSources::radiance(size_t source, const Vec3& direction) const {
   return float(1 / (pi * sqr(std::sin(blurred_radius))));
 }
 
-DrawnSources::DrawnSources(const OutsideSources& sources, size_t first, size_t count, int samples,
-                           uint64_t seed) {
+std::vector<uint32_t> OutsideSources::by_azimuth() const {
+  std::vector<double> azimuths;
+  for (const ReinhartPatch& p : sky_.patches())
+    azimuths.push_back(std::atan2(p.centre().x, p.centre().y));
+  azimuths.push_back(std::numeric_limits<double>::infinity());
+  for (const Vec3& s : suns_)
+    azimuths.push_back(std::atan2(dot(Vec3d(s), compass_.east), dot(Vec3d(s), compass_.north)));
+  std::vector<uint32_t> order(size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](uint32_t a, uint32_t b) { return azimuths[a] < azimuths[b]; });
+  return order;
+}
+
+DrawnSources::DrawnSources(const OutsideSources& sources, std::span<const uint32_t> numbers,
+                           int samples, uint64_t seed) {
   Random random(seed);
-  for (size_t i = 0; i < count; ++i) {
-    for (size_t k = 0; k < drawings; ++k) sources.draw(first + i, samples, random, samples_);
+  for (const uint32_t number : numbers) {
+    for (size_t k = 0; k < drawings; ++k) sources.draw(number, samples, random, samples_);
     begin_.push_back(samples_.size());
   }
 }

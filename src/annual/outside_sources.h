@@ -31,6 +31,9 @@ class OutsideSources {
   size_t ground() const { return sky_.size(); }
   size_t first_sun() const { return sky_.size() + 1; }
   const ReinhartSky& sky() const { return sky_; }
+  // All sources in an order in which neighbours mostly light the same windows: by azimuth, the
+  // ground last.
+  std::vector<uint32_t> by_azimuth() const;
 
   // Adds stratified samples of a source to `out`: `count` of a patch or a sun, and one of each
   // mirrored patch of the ground, which is large. Weights are for the mean over all of them.
@@ -53,10 +56,10 @@ class OutsideSources {
 // drawings are shared but no sample costs more than a look-up.
 class DrawnSources {
  public:
-  // Draws sources first … first + count - 1 with `samples` per drawing.
-  DrawnSources(const OutsideSources& sources, size_t first, size_t count, int samples,
+  // Draws the sources of these numbers with `samples` per drawing.
+  DrawnSources(const OutsideSources& sources, std::span<const uint32_t> numbers, int samples,
                uint64_t seed);
-  // One drawing of source first + i.
+  // One drawing of source numbers[i].
   std::span<const OutsideSample> of(size_t i, Random& random) const {
     const size_t n = (begin_[i + 1] - begin_[i]) / drawings;
     return std::span(samples_).subspan(begin_[i] + (random.next_u32() % drawings) * n, n);

@@ -10,10 +10,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "annual/outside_sources.h"
+#include "annual/state_family.h"
 #include "annual/sun_grid.h"
 #include "annual/transport_cells.h"
 #include "render/progress.h"
@@ -24,7 +26,7 @@ constexpr int replicate_count = 8;
 
 // Coefficients of one replicate: lx per unit of a source, sensor by sensor.
 struct ReflectedReplicate {
-  SunGrid suns;
+  std::shared_ptr<const SunGrid> suns;
   size_t sources = 0;
   size_t cells = 0, links = 0;  // size of its matrix
   std::vector<float> coefficients;
@@ -34,15 +36,16 @@ struct ReflectedReplicate {
   }
 };
 
-// Keeps finished replicates of one scene (reflected_store.h).
+// Keeps finished replicates of all states (reflected_store.h).
 class ReplicateKeeper {
  public:
   virtual ~ReplicateKeeper() = default;
-  // Sets all but `suns` and `sources` of a replicate that was kept. Returns false otherwise.
-  virtual bool find(size_t replicate, size_t sensors, ReflectedReplicate& out) = 0;
+  // Sets all but `suns` and `sources` of a replicate that was kept. Returns false otherwise. state:
+  // StateOfFamily::number.
+  virtual bool find(size_t state, size_t replicate, size_t sensors, ReflectedReplicate& out) = 0;
   // False if another process computes the replicate, which then gets no coefficients here.
-  virtual bool is_own(size_t replicate) const = 0;
-  virtual void keep(size_t replicate, const ReflectedReplicate& finished) = 0;
+  virtual bool is_own(size_t state, size_t replicate) const = 0;
+  virtual void keep(size_t state, size_t replicate, const ReflectedReplicate& finished) = 0;
 };
 
 struct ReflectedOptions {
@@ -52,13 +55,11 @@ struct ReflectedOptions {
   ReplicateKeeper* keeper = nullptr;  // may be null
 };
 
-// Computes all replicates. Returns fewer once `stop` is set. Memory besides the results: per thread
-// 400 bytes per cell, and 16 bytes per ray of one replicate.
-std::vector<ReflectedReplicate> reflected_light(const PreparedScene& scene,
-                                                std::span<const CellHit> sensors,
-                                                const WeatherYear& year, const Compass& compass,
-                                                const ReflectedOptions& options,
-                                                const ProgressCallback& progress,
-                                                const StopFlag& stop);
+// Computes all replicates of the states of a family, state by state. Returns fewer of each once
+// `stop` is set. A state's replicates do not depend on which other states are computed. Memory
+// besides the results: per thread 400 bytes per cell, and 16 bytes per ray of one replicate.
+std::vector<std::vector<ReflectedReplicate>> reflected_light(
+    const StateFamily& family, const WeatherYear& year, const Compass& compass,
+    const ReflectedOptions& options, const ProgressCallback& progress, const StopFlag& stop);
 
 }  // namespace troffer

@@ -60,8 +60,7 @@ void ReflectedStore::read(const std::string& file, const PictureKey& key) {
   }
 }
 
-bool ReflectedStore::find(size_t state, size_t replicate, size_t sensors,
-                          ReflectedReplicate& out) const {
+bool ReflectedStore::find(size_t state, size_t replicate, size_t sensors, ReflectedReplicate& out) {
   const auto at = items_.find({state, replicate});
   if (at == items_.end()) return false;
   const std::span<const uint8_t> bytes = at->second.bytes;

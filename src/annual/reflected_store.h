@@ -24,7 +24,7 @@ PictureKey reflected_key(const std::string& program, const std::vector<LightPath
                          const Compass& compass, const ReflectedOptions& options);
 
 // Not thread-safe.
-class ReflectedStore {
+class ReflectedStore : public ReplicateKeeper {
  public:
   // Process number `part` (from 1) of `parts` computes each parts-th item.
   explicit ReflectedStore(int part = 1, int parts = 1) : part_(part), parts_(parts) {}
@@ -37,13 +37,13 @@ class ReflectedStore {
   void read(const std::string& file, const PictureKey& key);
 
   // True if this process computes the item.
-  bool is_own(size_t state, size_t replicate) const {
+  bool is_own(size_t state, size_t replicate) const override {
     return (state * size_t(replicate_count) + replicate) % size_t(parts_) == size_t(part_ - 1);
   }
   // Sets all but the suns of a replicate, for so many sensors. Returns false if the item is
   // unknown. Throws InputError if it does not fit.
-  bool find(size_t state, size_t replicate, size_t sensors, ReflectedReplicate& out) const;
-  void keep(size_t state, size_t replicate, const ReflectedReplicate& item);
+  bool find(size_t state, size_t replicate, size_t sensors, ReflectedReplicate& out) override;
+  void keep(size_t state, size_t replicate, const ReflectedReplicate& item) override;
   // Writes the file. Returns the reason if that fails, or an empty string.
   std::string save();
   size_t size() const { return items_.size(); }
@@ -58,23 +58,6 @@ class ReflectedStore {
   int part_, parts_;
   std::map<std::pair<size_t, size_t>, Item> items_;  // by state and replicate
   std::unique_ptr<Checkpoint> checkpoint_;
-};
-
-// The items of one state.
-class KeptReplicates : public ReplicateKeeper {
- public:
-  KeptReplicates(ReflectedStore& store, size_t state) : store_(store), state_(state) {}
-  bool find(size_t replicate, size_t sensors, ReflectedReplicate& out) override {
-    return store_.find(state_, replicate, sensors, out);
-  }
-  bool is_own(size_t replicate) const override { return store_.is_own(state_, replicate); }
-  void keep(size_t replicate, const ReflectedReplicate& finished) override {
-    store_.keep(state_, replicate, finished);
-  }
-
- private:
-  ReflectedStore& store_;
-  size_t state_;
 };
 
 }  // namespace troffer

@@ -1,13 +1,10 @@
 #include "annual/sensor_hours.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstring>
 
-#include "annual/open_rays.h"
-#include "base/random.h"
 #include "base/simd.h"
-#include "base/streams.h"
 #include "base/units.h"
 
 namespace troffer {
@@ -15,192 +12,147 @@ namespace troffer {
 namespace {
 
 constexpr size_t replicates = replicate_count;
-constexpr size_t hours_at_a_time = 512;
 constexpr int cosine_points = 4;  // per side of a patch, for the mean cosine on a tilted sensor
 
-// out += w v
+// Hours added up together: floats of one cache line. Sums of all replicates stay in registers.
+constexpr size_t lanes = 16;
+using HourLanes [[gnu::vector_size(lanes * sizeof(float))]] = float;
+
+// out[r × stride + i] = Σ of all terms: coefficients[r] × luminance[first + i]
 TROFFER_MULTIVERSION
-void add_scaled(float w, const float* v, float* out, size_t n) {
-  for (size_t i = 0; i < n; ++i) out[i] += w * v[i];
-}
-
-class SensorCalculation {
- public:
-  SensorCalculation(const YearOfLight& light, size_t sensor, const CellHit& place)
-      : light_(light), sensor_(sensor), place_(place), rays_(light.scene.tracer) {
-    out_.hours = light.skies.hours();
-    out_.total.assign(replicates * out_.hours, 0);
-    out_.sun.assign(replicates * out_.hours, 0);
-  }
-
-  SensorHours compute() {
-    add_sky();
-    add_ground();
-    add_sun();
-    add_reflected_sky();
-    for (size_t r = 0; r < replicates; ++r) add_reflected_sun(r);
-    return std::move(out_);
-  }
-  std::vector<SunHour> compute_sun() {
-    add_sun();
-    std::vector<SunHour> hours;
-    for (size_t h = 0; h < out_.hours; ++h) {
-      float sum = 0;
-      for (size_t r = 0; r < replicates; ++r) sum += out_.sun[r * out_.hours + h];
-      if (sum > 0) hours.push_back({uint32_t(h), sum / float(replicates)});
-    }
-    return hours;
-  }
-
- private:
-  Vec3 world(const Vec3d& d) const {
-    const Compass& c = light_.compass;
-    return Vec3(c.east * d.x + c.north * d.y + c.up * d.z);
-  }
-  float* total(size_t replicate) { return &out_.total[replicate * out_.hours]; }
-  Random random_of(uint64_t purpose) const {
-    return Random(hash_of(light_.seed, uint64_t(sensor_), purpose));
-  }
-  // Integral of the cosine over a patch.
-  double cosine_over(const ReinhartPatch& p) const {
-    if (length_squared(place_.normal - Vec3(light_.compass.up)) < 1e-10f) return p.cosine;
-    double sum = 0;
-    for (int y = 0; y < cosine_points; ++y)
-      for (int x = 0; x < cosine_points; ++x) {
-        const Vec3d d = p.direction((x + 0.5) / cosine_points, (y + 0.5) / cosine_points);
-        sum += std::max(0.0, double(dot(world(d), place_.normal)));
-      }
-    return sum * p.solid_angle / (cosine_points * cosine_points);
-  }
-
-  // One ray per patch and replicate. A patch that all rays see unhindered brings its exact share.
-  void add_sky() {
-    Random random = random_of(stream::annual_direct_sky);
-    const PatchHours& fine = light_.skies.fine;
-    std::vector<float> same(out_.hours, 0.0f);  // light that all replicates agree on
-    for (size_t p = 0; p < fine.sky.size(); ++p) {
-      const ReinhartPatch& patch = fine.sky.patches()[p];
-      std::array<float, replicates> c{};
-      if (!look(patch, 1, random, c)) continue;
-      const float* hours = fine.of(p, out_.hours).data();
-      const bool is_open = c[0] > 0 && is_clear_;
-      if (is_open) {
-        add_scaled(float(cosine_over(patch)), hours, same.data(), out_.hours);
-        continue;
-      }
-      for (size_t r = 0; r < replicates; ++r)
-        if (c[r] > 0) add_scaled(c[r], hours, total(r), out_.hours);
-    }
-    for (size_t r = 0; r < replicates; ++r) add_scaled(1, same.data(), total(r), out_.hours);
-  }
-  // The ground has uniform luminance: the mirrored coarse patches only stratify it.
-  void add_ground() {
-    Random random = random_of(stream::annual_direct_ground);
-    std::array<float, replicates> sum{};
-    for (const ReinhartPatch& p : light_.skies.coarse.sky.patches()) {
-      std::array<float, replicates> c{};
-      if (look(p, -1, random, c))
-        for (size_t r = 0; r < replicates; ++r) sum[r] += c[r];
+void sum_terms(const LightTerm* terms, size_t n, size_t first, size_t count, float* out,
+               size_t stride) {
+  size_t done = 0;
+  for (; done + lanes <= count; done += lanes) {
+    HourLanes sums[replicates] = {};
+    for (size_t t = 0; t < n; ++t) {
+      HourLanes v;
+      std::memcpy(&v, terms[t].luminance + first + done, sizeof v);
+      for (size_t r = 0; r < replicates; ++r) sums[r] += terms[t].coefficients[r] * v;
     }
     for (size_t r = 0; r < replicates; ++r)
-      add_scaled(sum[r], light_.skies.ground.data(), total(r), out_.hours);
+      std::memcpy(out + r * stride + done, &sums[r], sizeof sums[r]);
   }
-  // Sets c to the illuminance per luminance of a patch, and is_clear_ if nothing hides any of it.
-  // sign: -1 for its mirror image below the horizon. False if the sensor sees nothing.
-  bool look(const ReinhartPatch& patch, int sign, Random& random,
-            std::array<float, replicates>& c) {
-    rays_.clear();
-    std::array<float, replicates> cosines{};
-    std::array<bool, replicates> is_sent{};
+  for (; done < count; ++done)
     for (size_t r = 0; r < replicates; ++r) {
-      const double u = random.next_double();
-      Vec3d d = patch.direction(u, random.next_double());
-      d.z *= sign;
-      const Vec3 w = world(d);
-      cosines[r] = dot(w, place_.normal);
-      is_sent[r] = cosines[r] > 0;
-      if (is_sent[r]) rays_.add(place_, w);
+      float sum = 0;
+      for (size_t t = 0; t < n; ++t)
+        sum += terms[t].coefficients[r] * terms[t].luminance[first + done];
+      out[r * stride + done] = sum;
     }
-    if (rays_.size() == 0) return false;
-    rays_.trace();
-    is_clear_ = rays_.size() == replicates;
-    bool sees = false;
-    for (size_t r = 0, k = 0; r < replicates; ++r) {
-      if (!is_sent[r]) continue;
-      const float open = luminance(rays_[k++]);
-      is_clear_ = is_clear_ && open > 0.99999f;
-      sees = sees || open > 0;
-      c[r] = open * cosines[r] * float(patch.solid_angle);
-    }
-    return sees;
-  }
-  // One ray per hour and replicate, to a point of the sun's disc.
-  void add_sun() {
-    Random random = random_of(stream::annual_direct_sun);
-    for (size_t h = 0; h < out_.hours; ++h) {
-      const float lx = light_.skies.sun_lx[h];
-      if (lx == 0) continue;
-      const WeatherStep& step = light_.year.steps[light_.skies.steps[h]];
-      const Vec3 to_sun = world(direction_of(step.sun));
-      rays_.clear();
-      const float cosine = dot(to_sun, place_.normal);
-      if (cosine <= 0) continue;
-      for (size_t r = 0; r < replicates; ++r)
-        rays_.add(place_, within_sun(to_sun, random.next_vec2()));
-      rays_.trace();
-      for (size_t r = 0; r < replicates; ++r) {
-        const float sunlight = lx * cosine * luminance(rays_[r]);
-        out_.sun[r * out_.hours + h] = sunlight;
-        out_.total[r * out_.hours + h] += sunlight;
-      }
-    }
-  }
-  // In runs of hours, so that luminances and sums stay in the cache.
-  void add_reflected_sky() {
-    const PatchHours& coarse = light_.skies.coarse;
-    const size_t patches = coarse.sky.size();
-    for (size_t first = 0; first < out_.hours; first += hours_at_a_time) {
-      const size_t n = std::min(hours_at_a_time, out_.hours - first);
-      for (size_t p = 0; p <= patches; ++p) {
-        const float* sky =
-            p < patches ? coarse.of(p, out_.hours).data() : light_.skies.ground.data();
-        for (size_t r = 0; r < replicates; ++r) {
-          const float c = light_.reflected[r].of(sensor_)[p];
-          if (c > 0) add_scaled(c, sky + first, total(r) + first, n);
-        }
-      }
-    }
-  }
-  void add_reflected_sun(size_t r) {
-    const ReflectedReplicate& replicate = light_.reflected[r];
-    const std::span<const float> c = replicate.of(sensor_);
-    const size_t patches = light_.skies.coarse.sky.size();
-    for (size_t h = 0; h < out_.hours; ++h) {
-      const float lx = light_.skies.sun_lx[h];
-      if (lx == 0) continue;
-      float of_sun = 0;
-      for (const SunGrid::Share& s : replicate.suns.shares()[light_.skies.steps[h]])
-        of_sun += s.weight * c[patches + 1 + s.node];
-      total(r)[h] += lx * of_sun;
-    }
-  }
-
-  const YearOfLight& light_;
-  size_t sensor_;
-  const CellHit& place_;
-  OpenRays rays_;
-  bool is_clear_ = false;
-  SensorHours out_;
-};
+}
 
 }  // namespace
 
-SensorHours sensor_hours(const YearOfLight& light, size_t sensor, const CellHit& place) {
-  return SensorCalculation(light, sensor, place).compute();
+SensorHours::SensorHours(const YearOfLight& light, size_t sensor, const CellHit& place,
+                         const DirectRays& rays, std::span<const float> open)
+    : light_(light), sensor_(sensor), place_(place) {
+  add_sky(rays, open);
+  add_ground(rays, open);
+  add_sun(rays, open);
+  add_reflected_sky(sensor);
 }
 
-std::vector<SunHour> sun_of_sensor(const YearOfLight& light, size_t sensor, const CellHit& place) {
-  return SensorCalculation(light, sensor, place).compute_sun();
+void SensorHours::add(const float* luminance, const std::array<float, replicates>& coefficients) {
+  const auto is_zero = [](float c) { return c == 0; };
+  if (!std::all_of(coefficients.begin(), coefficients.end(), is_zero))
+    terms_.push_back({luminance, coefficients});
+}
+
+// Integral of the cosine over a patch.
+double SensorHours::cosine_over(const ReinhartPatch& p) const {
+  const Vec3 up(light_.outside.compass.up);
+  if (length_squared(place_.normal - up) < 1e-10f) return p.cosine;
+  double sum = 0;
+  for (int y = 0; y < cosine_points; ++y)
+    for (int x = 0; x < cosine_points; ++x) {
+      const Vec3d d = p.direction((x + 0.5) / cosine_points, (y + 0.5) / cosine_points);
+      sum += std::max(0.0, double(dot(light_.outside.world(d), place_.normal)));
+    }
+  return sum * p.solid_angle / (cosine_points * cosine_points);
+}
+
+// A patch that all rays see unhindered brings its exact share.
+void SensorHours::add_sky(const DirectRays& rays, std::span<const float> open) {
+  const PatchHours& fine = light_.outside.skies.fine;
+  for (size_t p = 0; p < fine.sky.size(); ++p) {
+    const std::span<const float> of_patch = open.subspan(p * replicates, replicates);
+    if (std::all_of(of_patch.begin(), of_patch.end(), [](float o) { return o == 0; })) continue;
+    const ReinhartPatch& patch = fine.sky.patches()[p];
+    std::array<float, replicates> c{};
+    if (std::all_of(of_patch.begin(), of_patch.end(), [](float o) { return o > 0.99999f; }))
+      c.fill(float(cosine_over(patch)));
+    else
+      for (size_t r = 0; r < replicates; ++r)
+        c[r] = of_patch[r] * rays.cosine(p * replicates + r) * float(patch.solid_angle);
+    add(fine.of(p, light_.outside.skies.hours()).data(), c);
+  }
+}
+
+void SensorHours::add_ground(const DirectRays& rays, std::span<const float> open) {
+  const YearSkies& skies = light_.outside.skies;
+  std::array<float, replicates> sum{};
+  size_t ray = rays.first_of_ground();
+  for (const ReinhartPatch& p : skies.coarse.sky.patches())
+    for (size_t r = 0; r < replicates; ++r, ++ray)
+      if (open[ray] != 0) sum[r] += open[ray] * rays.cosine(ray) * float(p.solid_angle);
+  add(skies.ground.data(), sum);
+}
+
+void SensorHours::add_sun(const DirectRays& rays, std::span<const float> open) {
+  size_t ray = rays.first_of_sun();
+  for (const uint32_t h : rays.sun_hours()) {
+    SunTerm sun{h, {}};
+    const float lx = light_.outside.skies.sun_lx[h] * rays.cosine(ray);
+    bool is_lit = false;
+    for (size_t r = 0; r < replicates; ++r, ++ray) {
+      sun.lx[r] = lx * open[ray];
+      is_lit = is_lit || sun.lx[r] != 0;
+    }
+    if (is_lit) suns_.push_back(sun);
+  }
+}
+
+void SensorHours::add_reflected_sky(size_t sensor) {
+  const YearSkies& skies = light_.outside.skies;
+  const size_t patches = skies.coarse.sky.size();
+  for (size_t p = 0; p <= patches; ++p) {
+    std::array<float, replicates> c{};
+    for (size_t r = 0; r < replicates; ++r) c[r] = light_.reflected[r].of(sensor)[p];
+    add(p < patches ? skies.coarse.of(p, skies.hours()).data() : skies.ground.data(), c);
+  }
+}
+
+void SensorHours::compute(RunOfHours& out) {
+  sum_terms(terms_.data(), terms_.size(), out.first, out.count, out.total[0].data(),
+            RunOfHours::most);
+  add_reflected_sun(out);
+  for (auto& of_replicate : out.sun) of_replicate.fill(0);
+  for (; next_sun_ < suns_.size() && suns_[next_sun_].hour < out.first + out.count; ++next_sun_) {
+    const SunTerm& sun = suns_[next_sun_];
+    for (size_t r = 0; r < replicates; ++r) {
+      out.sun[r][sun.hour - out.first] = sun.lx[r];
+      out.total[r][sun.hour - out.first] += sun.lx[r];
+    }
+  }
+}
+
+void SensorHours::add_reflected_sun(RunOfHours& out) const {
+  const YearSkies& skies = light_.outside.skies;
+  const size_t first_sun = skies.coarse.sky.size() + 1;
+  for (size_t r = 0; r < replicates; ++r) {
+    const ReflectedReplicate& replicate = light_.reflected[r];
+    const float* c = replicate.of(sensor_).data() + first_sun;
+    for (size_t i = 0; i < out.count; ++i) {
+      const size_t h = out.first + i;
+      const float lx = skies.sun_lx[h];
+      if (lx == 0) continue;
+      float of_sun = 0;
+      for (const SunGrid::Share& s : replicate.suns->shares()[skies.steps[h]])
+        of_sun += s.weight * c[s.node];
+      out.total[r][i] += lx * of_sun;
+    }
+  }
 }
 
 }  // namespace troffer

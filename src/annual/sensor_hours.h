@@ -1,46 +1,68 @@
-// Illuminance of one sensor in all hours of a year, replicate by replicate: light straight from sky
-// and ground, sunlight at the sun's true positions, and reflected light.
+// Illuminance of one sensor in one state, in all hours of a year, replicate by replicate: light
+// straight from sky and ground, sunlight at the sun's true positions, and reflected light.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "annual/blinds.h"
-#include "annual/reflected_light.h"
-#include "annual/year_skies.h"
+#include "annual/direct_rays.h"
 
 namespace troffer {
 
-// lx per replicate and hour, one replicate after the other.
-struct SensorHours {
-  size_t hours = 0;
-  std::vector<float> total;
-  std::vector<float> sun;  // part of `total` that comes straight from the sun
-
-  std::span<const float> total_of(size_t replicate) const {
-    return std::span(total).subspan(replicate * hours, hours);
-  }
-  std::span<const float> sun_of(size_t replicate) const {
-    return std::span(sun).subspan(replicate * hours, hours);
-  }
-};
-
-// Everything that all sensors share.
+// What is computed of one state.
 struct YearOfLight {
   const PreparedScene& scene;
-  const WeatherYear& year;
-  const YearSkies& skies;
-  const Compass& compass;
+  const YearOutside& outside;
   std::span<const ReflectedReplicate> reflected;
-  uint64_t seed = 0;
 };
 
-// Computes a sensor. Any number of threads may do so for different sensors.
-SensorHours sensor_hours(const YearOfLight& light, size_t sensor, const CellHit& place);
+// Hourly luminances, and their coefficients in lx per cd/m², by replicate.
+struct LightTerm {
+  const float* luminance = nullptr;
+  std::array<float, size_t(replicate_count)> coefficients{};
+};
 
-// Returns the hours in which the sun reaches a sensor straight, by the same rays as sensor_hours():
-// the mean of all replicates. YearOfLight::reflected is not used.
-std::vector<SunHour> sun_of_sensor(const YearOfLight& light, size_t sensor, const CellHit& place);
+// Some hours of a sensor in lx: for each replicate, a run of them.
+struct RunOfHours {
+  static constexpr size_t most = 512;  // so that all fits the processor's cache
+  size_t first = 0, count = 0;         // hours
+  std::array<std::array<float, most>, size_t(replicate_count)> total;
+  std::array<std::array<float, most>, size_t(replicate_count)> sun;  // the part straight from it
+};
+
+// A sensor's light as a sum of products, from which any run of hours follows.
+class SensorHours {
+ public:
+  // open: DirectRays::open_in() the state. All must outlive this.
+  SensorHours(const YearOfLight& light, size_t sensor, const CellHit& place, const DirectRays& rays,
+              std::span<const float> open);
+
+  // Sets the values of out.first … out.first + out.count - 1. Runs must be asked for in order.
+  void compute(RunOfHours& out);
+
+ private:
+  // Hour with sun, and sunlight of each replicate in lx.
+  struct SunTerm {
+    uint32_t hour = 0;
+    std::array<float, size_t(replicate_count)> lx{};
+  };
+
+  void add_sky(const DirectRays& rays, std::span<const float> open);
+  void add_ground(const DirectRays& rays, std::span<const float> open);
+  void add_sun(const DirectRays& rays, std::span<const float> open);
+  void add_reflected_sky(size_t sensor);
+  double cosine_over(const ReinhartPatch& patch) const;
+  void add(const float* luminance, const std::array<float, size_t(replicate_count)>& coefficients);
+  void add_reflected_sun(RunOfHours& out) const;
+
+  const YearOfLight& light_;
+  size_t sensor_;
+  CellHit place_;
+  std::vector<LightTerm> terms_;
+  std::vector<SunTerm> suns_;  // ordered by hour
+  size_t next_sun_ = 0;        // first one that no run has reached
+};
 
 }  // namespace troffer

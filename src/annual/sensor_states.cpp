@@ -37,6 +37,14 @@ LitStates::LitStates(const std::vector<LightPath>& paths, const std::vector<Meas
     for (const PathState& s : p.states) states_.push_back({s.scene, hits_of(*s.scene, points), {}});
 }
 
+std::vector<StateFamily> LitStates::families() const {
+  std::vector<SceneOfState> scenes;
+  for (size_t p = 0; p < paths(); ++p)
+    for (size_t k = first_of(p); k < first_of(p + 1); ++k)
+      scenes.push_back({states_[k].scene, states_[k].hits, p});
+  return state_families(scenes);
+}
+
 StateSums::StateSums(const LitStates& states, const StateSchedule& schedule) : schedule_(schedule) {
   for (size_t p = 0; p < states.paths(); ++p)
     for (size_t k = states.first_of(p); k < states.first_of(p + 1); ++k) {
@@ -48,20 +56,31 @@ StateSums::StateSums(const LitStates& states, const StateSchedule& schedule) : s
 StateSums::Sensor::Sensor(const StateSums& owner) : owner_(owner) {
   const size_t n = set_count * owner.schedule_.hours;
   for (std::vector<float>* v : {&operated_, &open_, &sun_}) v->assign(n, 0);
+  states_.resize(owner.path_of_.size());
+  for (HoursOfState& s : states_)
+    for (std::vector<float>* v : {&s.total, &s.sun}) v->resize(owner.schedule_.hours);
 }
 
-void StateSums::Sensor::add(size_t k, const SensorHours& hours) {
+void StateSums::Sensor::add(size_t k, const RunOfHours& run) {
   const std::span<const uint16_t> shown = owner_.schedule_.of(owner_.path_of_[k]);
-  const size_t number = owner_.number_of_[k];
-  for (size_t r = 0; r < set_count; ++r)
-    for (size_t h = 0; h < hours.hours; ++h) {
-      const size_t i = r * hours.hours + h;
-      if (shown[h] == number) operated_[i] += hours.total[i];
-      if (number > 0) continue;
-      open_[i] += hours.total[i];
-      sun_[i] += hours.sun[i];
+  const size_t number = owner_.number_of_[k], hours = owner_.schedule_.hours;
+  for (size_t r = 0; r < set_count; ++r) {
+    const size_t first = r * hours + run.first;
+    for (size_t i = 0; i < run.count; ++i)
+      operated_[first + i] += shown[run.first + i] == number ? run.total[r][i] : 0;
+    if (number > 0) continue;
+    for (size_t i = 0; i < run.count; ++i) open_[first + i] += run.total[r][i];
+    for (size_t i = 0; i < run.count; ++i) sun_[first + i] += run.sun[r][i];
+  }
+  for (size_t i = 0; i < run.count; ++i) {
+    double total = 0, sun = 0;
+    for (size_t r = 0; r < set_count; ++r) {
+      total += double(run.total[r][i]);
+      sun += double(run.sun[r][i]);
     }
-  states_.push_back({mean_of(hours.total), mean_of(hours.sun)});
+    states_[k].total[run.first + i] = float(total / double(set_count));
+    states_[k].sun[run.first + i] = float(sun / double(set_count));
+  }
 }
 
 void StateSums::Sensor::add_glare(size_t k, const std::vector<float>& strengths) {

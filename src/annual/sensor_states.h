@@ -6,6 +6,7 @@
 
 #include "annual/annual.h"
 #include "annual/sensor_hours.h"
+#include "annual/state_family.h"
 
 namespace troffer {
 
@@ -27,6 +28,7 @@ class LitStates {
   const LitState& operator[](size_t k) const { return states_[k]; }
   // Returns the first state of a path; size() for the path number paths().
   size_t first_of(size_t path) const { return first_[path]; }
+  std::vector<StateFamily> families() const;
 
  private:
   std::vector<size_t> first_;
@@ -47,8 +49,8 @@ class StateSums {
   class Sensor {
    public:
     explicit Sensor(const StateSums& owner);
-    // Adds the hours of state k. Each state once.
-    void add(size_t k, const SensorHours& hours);
+    // Adds some hours of state k. Each state and hour once.
+    void add(size_t k, const RunOfHours& run);
     // Adds Σ L² ω / P² of the sources that an eye sees in state k (eye_glare.h).
     void add_glare(size_t k, const std::vector<float>& strengths);
     // Means of replicates. Adds squares to `sums`.

@@ -6,7 +6,6 @@
 #include "base/random.h"
 #include "base/streams.h"
 #include "bsdf/bsdf.h"
-#include "gather/cell_rays.h"
 
 namespace troffer {
 
@@ -15,47 +14,6 @@ namespace {
 // Cell size over the median length of gather rays. Larger than for pictures (gather/cell_builder),
 // because sensors see means over many cells.
 constexpr float size_of_median = 0.2f;
-constexpr size_t tasks_at_a_time = 4096;
-// Cells are followed this far; they then number a few per cent of all at most.
-constexpr int most_rounds = 12;
-constexpr size_t most_cells = size_t(1) << 20;
-// Largest sum of a row. Rows of matte surfaces stay below one; roulette at gloss may exceed it.
-constexpr float most_of_row = 0.99f;
-
-// Makes one row per task of `seen`, which is ordered by task. cell_of: cell of a hit.
-template <class CellOf>
-void add_rows(const CellsSeen& seen, std::span<const CellTask> tasks, bool is_bounded,
-              const CellOf& cell_of, LinkRows<CellLink>& rows, LinkRows<OutsideLink>& outside) {
-  std::vector<CellLink> links;
-  std::vector<OutsideLink> ways;
-  size_t at = 0, way = 0;
-  for (size_t t = 0; t < tasks.size(); ++t) {
-    links.clear();
-    ways.clear();
-    const float share = 1.0f / float(tasks[t].count);
-    for (; at < seen.seen.size() && seen.seen[at].task == t; ++at)
-      links.push_back({cell_of(seen.seen[at]), seen.seen[at].weight * share});
-    for (; way < seen.escapes.size() && seen.escapes[way].task == t; ++way)
-      ways.push_back({seen.escapes[way].direction, seen.escapes[way].weight * share});
-    std::sort(links.begin(), links.end(),
-              [](const CellLink& a, const CellLink& b) { return a.cell < b.cell; });
-    size_t kept = 0;
-    Rgb sum{0};
-    for (size_t i = 0; i < links.size(); ++i) {
-      sum += links[i].weight;
-      if (kept > 0 && links[kept - 1].cell == links[i].cell)
-        links[kept - 1].weight += links[i].weight;
-      else
-        links[kept++] = links[i];
-    }
-    links.resize(kept);
-    if (is_bounded && max_component(sum) > most_of_row)
-      for (CellLink& l : links) l.weight *= most_of_row / max_component(sum);
-    rows.add(links);
-    outside.add(ways);
-  }
-}
-
 float median_distance(const CellsSeen& seen) {
   std::vector<float> d;
   for (const CellSeen& s : seen.seen) d.push_back(s.distance);
@@ -63,6 +21,16 @@ float median_distance(const CellsSeen& seen) {
   const auto middle = d.begin() + std::ptrdiff_t(d.size() / 2);
   std::nth_element(d.begin(), middle, d.end());
   return *middle;
+}
+
+// Returns the cell of each hit. Makes cells that do not exist yet.
+std::vector<uint32_t> cells_of(const CellsSeen& seen, CellMap& map, CellPlaces& places) {
+  std::vector<uint32_t> cells;
+  for (const CellSeen& s : seen.seen) {
+    cells.push_back(map.add(s.hit, s.distance));
+    places.add(cells.back(), s.hit);
+  }
+  return cells;
 }
 
 }  // namespace
@@ -79,10 +47,36 @@ void CellPlaces::add(uint32_t cell, const CellHit& hit) {
   if (at < hits_per_cell) p.hits[at] = hit;
 }
 
+float coat_factor_at(const GatherWalks& walks, const CellHit& hit, float cosine) {
+  if (hit.coated == CellHit::uncoated) return 1;
+  return coat_share(walks.coat_at(hit), cosine);
+}
+
+CellTasks::CellTasks(const CellPlaces& places, size_t first, size_t count) : first_(first) {
+  for (size_t c = first; c < first + count; ++c) {
+    const std::span<const CellHit> hits = places.of(c);
+    from_.emplace_back(hits.begin(), hits.end());
+  }
+}
+
+std::vector<CellTask> CellTasks::tasks(const TransportRays& rays, size_t near, uint64_t seed,
+                                       size_t number) const {
+  std::vector<CellTask> tasks;
+  for (size_t i = 0; i < from_.size(); ++i) {
+    const size_t cell = first_ + i;
+    CellTask& t = tasks.emplace_back();
+    t.cell = uint32_t(cell);
+    t.count = uint32_t(cell < near ? rays.of_near_cell : rays.of_far_cell);
+    t.stream = hash_of(seed, uint64_t(cell + number), stream::annual_rows);
+    t.from = from_[i];
+  }
+  return tasks;
+}
+
 TransportCells::TransportCells(const PreparedScene& scene, std::span<const CellHit> sensors,
-                               const TransportRays& rays, uint64_t seed, int threads,
-                               const StopFlag& stop)
-    : scene_(scene), walks_(scene, nullptr), places_(seed) {
+                               const TransportRays& rays, const RayRegions& regions, uint64_t seed,
+                               int threads, const StopFlag& stop)
+    : walks_(scene, nullptr), places_(seed) {
   std::vector<CellTask> tasks;
   for (size_t i = 0; i < sensors.size(); ++i) {
     CellTask& t = tasks.emplace_back();
@@ -99,49 +93,52 @@ TransportCells::TransportCells(const PreparedScene& scene, std::span<const CellH
   const double octave = Random(hash_of(seed, stream::annual_cell_places)).next_double() - 0.5;
   const float size = size_of_median * median_distance(seen) * float(std::exp2(octave));
   cells_ = std::make_unique<CellMap>(scene.tracer, std::max(size, least_cell));
-  const auto cell_of = [&](const CellSeen& s) {
-    const uint32_t cell = cells_->add(s.hit, s.distance);
-    places_.add(cell, s.hit);
-    return cell;
-  };
-  add_rows(seen, tasks, false, cell_of, sensors_, sensors_outside_);
+  // A cell that reaches into a region is none of the state's, because a surface of the state may
+  // divide it. Rays to all places of such cells see cells of the state.
+  const RayRegions wide = regions.widened(cells_->size_of_cells());
+  for (RayLog* log : {&sensor_log_, &row_log_}) log->begin(wide, !ends_all_walks(scene.scene));
+  add_rows(seen, tasks, cells_of(seen, *cells_, places_), nullptr, sensors_);
+  sensor_log_.add(walks_, tasks, {}, 0);
   near_ = cells_->size();
-
-  for (int round = 0; round < most_rounds && !stop.load(); ++round) {
-    const size_t end = cells_->size();
-    if (rows_.size() == end || end > most_cells) break;
-    while (rows_.size() < end && !stop.load()) {
-      const size_t first = rows_.size(), last = std::min(end, first + tasks_at_a_time);
-      tasks.clear();
-      // Places change as further rays hit, so tasks have copies.
-      std::vector<std::vector<CellHit>> from;
-      for (size_t c = first; c < last; ++c) {
-        const std::span<const CellHit> hits = places_.of(c);
-        from.emplace_back(hits.begin(), hits.end());
-      }
-      for (size_t c = first; c < last; ++c) {
-        CellTask& t = tasks.emplace_back();
-        t.cell = uint32_t(c);
-        t.count = uint32_t(c < near_ ? rays.of_near_cell : rays.of_far_cell);
-        t.stream = hash_of(seed, uint64_t(c), stream::annual_rows);
-        t.from = from[c - first];
-      }
-      trace_cell_rays(walks_, nullptr, tasks, threads, nullptr, stop, seen, counters);
-      add_rows(seen, tasks, true, cell_of, rows_, rows_outside_);
-    }
-  }
-  while (rows_.size() < cells_->size()) {
-    rows_.add({});
-    rows_outside_.add({});
-  }
-  for (const LinkRows<CellLink>* rows : {&sensors_, &rows_})
-    for (const CellLink& l : rows->all())
-      is_grey_ = is_grey_ && l.weight.r == l.weight.g && l.weight.g == l.weight.b;
+  trace_rows(rays, seed, threads, stop);
+  see_log(sensor_log_, threads, stop);
+  see_log(row_log_, threads, stop);
+  is_grey_ = are_grey(sensors_.cells) && are_grey(rows_.cells);
 }
 
-float TransportCells::coat_factor(const CellHit& hit, float cosine) const {
-  if (hit.coated == CellHit::uncoated) return 1;
-  return coat_share(walks_.coat_at(hit), cosine);
+void TransportCells::trace_rows(const TransportRays& rays, uint64_t seed, int threads,
+                                const StopFlag& stop) {
+  CellsSeen seen;
+  seen.keeps_escapes = true;
+  Counters counters;
+  for (int round = 0; round < most_cell_rounds && !stop.load(); ++round) {
+    const size_t end = cells_->size();
+    if (rows_.size() == end || end > most_transport_cells) break;
+    while (rows_.size() < end && !stop.load()) {
+      const size_t first = rows_.size();
+      const CellTasks next(places_, first, std::min(end - first, cell_tasks_at_a_time));
+      const std::vector<CellTask> tasks = next.tasks(rays, near_, seed, 0);
+      trace_cell_rays(walks_, nullptr, tasks, threads, nullptr, stop, seen, counters);
+      std::vector<float> scales;
+      add_rows(seen, tasks, cells_of(seen, *cells_, places_), &scales, rows_);
+      row_log_.add(walks_, tasks, scales, first);
+    }
+  }
+  while (rows_.size() < cells_->size()) rows_.add_empty();
+}
+
+// Finds what the rays of a log see in this scene.
+void TransportCells::see_log(RayLog& log, int threads, const StopFlag& stop) const {
+  const std::vector<CellTask> tasks = log.tasks();
+  CellsSeen seen;
+  seen.keeps_escapes = true;
+  Counters counters;
+  trace_cell_rays(walks_, cells_.get(), tasks, threads, nullptr, stop, seen, counters);
+  std::vector<uint32_t> cells;
+  for (const CellSeen& s : seen.seen) cells.push_back(s.cell);
+  SightRows rows;
+  add_rows(seen, tasks, cells, nullptr, rows);
+  log.set_seen(std::move(rows));
 }
 
 }  // namespace troffer

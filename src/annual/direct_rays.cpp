@@ -1,0 +1,117 @@
+#include "annual/direct_rays.h"
+
+#include <algorithm>
+
+#include "base/random.h"
+#include "base/streams.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr size_t replicates = replicate_count;
+
+}  // namespace
+
+DirectRays::DirectRays(const YearOutside& outside, const StateFamily& family, size_t sensor,
+                       Parts parts)
+    : outside_(outside),
+      family_(family),
+      sensor_(sensor),
+      place_(family.sensors[sensor]),
+      of_region_(family.regions.size()) {
+  if (parts == Parts::all) add_sky();
+  first_of_ground_ = rays_.size();
+  if (parts == Parts::all) add_ground();
+  first_of_sun_ = rays_.size();
+  add_sun();
+  trace();
+}
+
+void DirectRays::add_sky() {
+  Random random(hash_of(outside_.seed, uint64_t(sensor_), stream::annual_direct_sky));
+  for (const ReinhartPatch& p : outside_.skies.fine.sky.patches())
+    for (size_t r = 0; r < replicates; ++r) {
+      const double u = random.next_double();
+      const Vec3 d = outside_.world(p.direction(u, random.next_double()));
+      add(d, dot(d, place_.normal));
+    }
+}
+
+// The ground has uniform luminance: the mirrored coarse patches only stratify it.
+void DirectRays::add_ground() {
+  Random random(hash_of(outside_.seed, uint64_t(sensor_), stream::annual_direct_ground));
+  for (const ReinhartPatch& p : outside_.skies.coarse.sky.patches())
+    for (size_t r = 0; r < replicates; ++r) {
+      const double u = random.next_double();
+      Vec3d d = p.direction(u, random.next_double());
+      d.z = -d.z;
+      add(outside_.world(d), dot(outside_.world(d), place_.normal));
+    }
+}
+
+// To points of the sun's disc. All rays of an hour have the cosine of its middle.
+void DirectRays::add_sun() {
+  Random random(hash_of(outside_.seed, uint64_t(sensor_), stream::annual_direct_sun));
+  const YearSkies& skies = outside_.skies;
+  for (uint32_t h = 0; h < skies.hours(); ++h) {
+    if (skies.sun_lx[h] == 0) continue;
+    const Vec3 to_sun = outside_.world(direction_of(outside_.year.steps[skies.steps[h]].sun));
+    const float cosine = dot(to_sun, place_.normal);
+    if (cosine <= 0) continue;
+    sun_hours_.push_back(h);
+    for (size_t r = 0; r < replicates; ++r) add(within_sun(to_sun, random.next_vec2()), cosine);
+  }
+}
+
+void DirectRays::trace() {
+  open_.assign(rays_.size(), 0);
+  OpenRays rays(family_.states[0].scene->tracer);
+  std::vector<uint32_t> sent, met;
+  const auto receive = [&] {
+    rays.trace();
+    for (size_t k = 0; k < sent.size(); ++k) open_[sent[k]] = luminance(rays[k]);
+    rays.clear();
+    sent.clear();
+  };
+  for (uint32_t i = 0; i < rays_.size(); ++i) {
+    if (!(rays_[i].cosine > 0)) continue;
+    const Ray& ray = rays.add(place_, rays_[i].direction);
+    met.clear();
+    family_.regions.find(ray, met);
+    for (const uint32_t r : met) of_region_[r].push_back(i);
+    sent.push_back(i);
+    if (sent.size() >= OpenRays::enough) receive();
+  }
+  receive();
+}
+
+std::vector<float> DirectRays::open_in(const StateOfFamily& state,
+                                       std::span<const float> fixed) const {
+  std::vector<float> open = open_;
+  if (&state != &family_.states[0]) {
+    const std::vector<uint32_t>& crossing = of_region_[state.region];
+    OpenRays rays(state.scene->tracer);
+    for (const uint32_t i : crossing) rays.add(place_, rays_[i].direction);
+    rays.trace();
+    for (size_t k = 0; k < crossing.size(); ++k) open[crossing[k]] = luminance(rays[k]);
+  }
+  for (size_t i = 0; i < fixed.size(); ++i) open[i] -= fixed[i];
+  return open;
+}
+
+std::vector<SunHour> DirectRays::sun_in(const StateOfFamily& state,
+                                        std::span<const float> fixed) const {
+  const std::vector<float> open = open_in(state, fixed);
+  std::vector<SunHour> hours;
+  for (size_t i = 0; i < sun_hours_.size(); ++i) {
+    const size_t ray = first_of_sun_ + i * replicates;
+    const float lx = outside_.skies.sun_lx[sun_hours_[i]] * cosine(ray);
+    float sum = 0;
+    for (size_t r = 0; r < replicates; ++r) sum += lx * open[ray + r];
+    if (sum != 0) hours.push_back({sun_hours_[i], sum / float(replicates)});
+  }
+  return hours;
+}
+
+}  // namespace troffer
