@@ -148,12 +148,13 @@ GatheredPicture make_gathered(const MethodInput& in, const std::shared_ptr<const
 // Ways to compute a picture whose cells are made.
 enum class CellWay : uint8_t { gathers, cached_paths, paths };
 
-// Returns the way of least cost. Path tracing is the best known of the three, so the others have to
-// promise more than the uncertainty of costs.
+// Returns the way of least cost, by costs that are uncertain. Plain paths are known best, so the
+// other ways have to promise clearly less. So have cached paths beside gathers: the forecast of
+// paths sees few of their rare bright rays.
 CellWay cheapest_way(const MethodPlan& plan, const PathForecast& cached, bool is_cached_possible,
                      double of_gathers) {
   constexpr double uncertainty = 1.25;  // factor of spread that bench/costs prints
-  const bool is_cached = is_cached_possible && cached.rays < of_gathers;
+  const bool is_cached = is_cached_possible && uncertainty * cached.rays < of_gathers;
   const double least = is_cached ? cached.rays : of_gathers;
   if (plan.forecast && plan.forecast->rays < uncertainty * least) return CellWay::paths;
   return is_cached ? CellWay::cached_paths : CellWay::gathers;

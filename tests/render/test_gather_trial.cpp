@@ -18,23 +18,20 @@ PlannedPart decision_of(const RenderResult& r, const char* part = "paths that en
   return {};
 }
 
-// Renders a matte room with a lamp in view, and with so many small plates below it in each
-// direction.
-RenderResult matte_room(int width, int height, float error, int plates = 0) {
+// Renders a room with a lamp in view: matte, or coated with wide gloss.
+RenderResult lit_room(int width, int height, float error, Indirect indirect = Indirect::automatic,
+                      bool is_coated = false) {
   Scene s;
-  const uint32_t grey = add_diffuse(s, Rgb{0.6f});
+  Material m;
+  m.base_color = {Rgb{0.6f}, no_texture};
+  m.roughness = {0.5f, no_texture, 0};  // of the coat
+  if (is_coated) m.kind = MaterialKind::coated_diffuse;
+  const uint32_t grey = add_material(s, m);
   add_box_inside(s, grey, {-2, -2, 0}, {2, 2, 2.5f});
   add_ceiling_light(s, 1, 2.4f, Rgb{10});
-  const float size = 2.0f / float(std::max(plates, 1));
-  for (int j = 0; j < plates; ++j)
-    for (int i = 0; i < plates; ++i) {
-      const float x = -1 + size * float(i), y = -1 + size * float(j), side = 0.6f * size,
-                  z = 1.5f + 0.3f * float((i * 7 + j * 5) % 8) / 8;
-      add_quad(s, grey, {{{x, y, z}, {x + side, y, z}, {x + side, y + side, z}, {x, y + side, z}}});
-    }
   const PreparedScene scene(std::move(s));
   RenderOptions o;
-  o.indirect = Indirect::automatic;
+  o.indirect = indirect;
   o.error = error;
   o.width = width;
   o.height = height;
@@ -46,7 +43,7 @@ RenderResult matte_room(int width, int height, float error, int plates = 0) {
 
 TEST_CASE("gathers: what surrogate samples resolve does not count as noise") {
   // The outline of the lamp varies within many pixels, but surrogate samples resolve it.
-  const RenderResult r = matte_room(128, 96, 0.1f);
+  const RenderResult r = lit_room(128, 96, 0.1f);
   const PlannedPart decision = decision_of(r);
   REQUIRE(decision.reason.find("gathers") != std::string::npos);
   CHECK(decision.choice == "no");
@@ -60,11 +57,16 @@ TEST_CASE("gathers: what surrogate samples resolve does not count as noise") {
 }
 
 TEST_CASE("gathers: small pictures, too, compare them with cached paths") {
-  CHECK(decision_of(matte_room(32, 24, 0.02f)).reason.find("gathers") != std::string::npos);
+  CHECK(decision_of(lit_room(32, 24, 0.02f)).reason.find("gathers") != std::string::npos);
 }
 
 TEST_CASE("first viewing rays take light samples where certificates would cost more") {
-  const char* part = "direct light of first viewing rays";
-  CHECK(decision_of(matte_room(64, 48, 0.05f), part).choice == "certificates");
-  CHECK(decision_of(matte_room(64, 48, 0.05f, 24), part).choice == "light samples");
+  // Certificates of matte light are exact sums; those of gloss need many points on the lamp.
+  const auto chosen = [](bool is_coated) {
+    return decision_of(lit_room(64, 48, 0.05f, Indirect::cells, is_coated),
+                       "direct light of first viewing rays")
+        .choice;
+  };
+  CHECK(chosen(false) == "certificates");
+  CHECK(chosen(true) == "light samples");
 }
