@@ -69,11 +69,19 @@ std::string electric_section(const AnnualReport& r) {
          number_cell(fmt::format("{:.0f} h", u.occupied_hours)),
          number_cell(fmt::format("{:.0f} h", u.full_load_hours)),
          number_cell(fmt::format("{:.0f} %", 100 * (1 - u.full_load_hours / u.occupied_hours)))});
+  std::string short_of;  // groups that do not reach the target
+  for (const DimmedUse& u : r.extras.electric)
+    if (u.sensors > 0 && u.mean_lx < r.extras.electric_target_lx)
+      short_of += (short_of.empty() ? "" : ", ") + html_name(u.name);
+  if (!short_of.empty())
+    short_of = fmt::format(
+        "<p class=\"sub\">At night the target is not reached, even at full output, by {}.</p>",
+        short_of);
   return fmt::format(
              "<h2>Electric light</h2><p class=\"sub\">Each group is dimmed so that the mean of the "
              "sensors that it lights most reaches {:g} lx.</p>",
              r.extras.electric_target_lx) +
-         table.html();
+         table.html() + short_of;
 }
 
 }  // namespace

@@ -11,8 +11,8 @@ struct StagedDirect::Scratch final : DirectLightScratch {
   WaveHits part;
 };
 
-StagedDirect::StagedDirect(std::shared_ptr<const DirectLight> first,
-                           std::shared_ptr<const DirectLight> later, uint32_t samples)
+StagedDirect::StagedDirect(std::unique_ptr<DirectLight> first, std::unique_ptr<DirectLight> later,
+                           uint32_t samples)
     : first_(std::move(first)), later_(std::move(later)), samples_(samples) {
   TROFFER_CHECK(first_->walked_part() == later_->walked_part());
 }

@@ -3,8 +3,6 @@
 // accurate, because its light is attenuated and averaged.
 #pragma once
 
-#include <memory>
-
 #include "transport/direct_light.h"
 
 namespace troffer {
@@ -12,7 +10,7 @@ namespace troffer {
 class StagedDirect final : public DirectLight {
  public:
   // Both must have the same walked_part(). samples: number of first samples of a pixel.
-  StagedDirect(std::shared_ptr<const DirectLight> first, std::shared_ptr<const DirectLight> later,
+  StagedDirect(std::unique_ptr<DirectLight> first, std::unique_ptr<DirectLight> later,
                uint32_t samples);
 
   std::unique_ptr<DirectLightScratch> make_scratch() const override;
@@ -31,7 +29,7 @@ class StagedDirect final : public DirectLight {
   }
   void take(const WaveHits& wave, bool first, WaveHits& out) const;
 
-  std::shared_ptr<const DirectLight> first_, later_;
+  std::unique_ptr<DirectLight> first_, later_;
   uint32_t samples_;
 };
 

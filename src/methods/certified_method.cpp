@@ -125,26 +125,6 @@ std::unique_ptr<Integrator> cached_paths(const MethodInput& in,
       in.scene, PathOptions{in.settings.depth, false, sampling, false, nullptr, cells});
 }
 
-// A picture by gathers, before they are made.
-struct GatheredPicture {
-  std::unique_ptr<Integrator> integrator;
-  CellsIndirect* reflected = nullptr;  // of the integrator
-};
-GatheredPicture make_gathered(const MethodInput& in, const std::shared_ptr<const Cells>& cells,
-                              std::shared_ptr<const DirectLight> first,
-                              std::shared_ptr<const DirectLight> further) {
-  constexpr auto all = std::numeric_limits<uint32_t>::max();
-  const bool is_picture = in.cells->view != nullptr;
-  const uint32_t samples = is_picture ? uint32_t(in.settings.viewing_rays) : all;
-  auto indirect = std::make_unique<CellsIndirect>(cells, nullptr);
-  CellsIndirect* const reflected = indirect.get();
-  return {
-      std::make_unique<WaveIntegrator>(
-          in.scene, std::make_unique<StagedDirect>(std::move(first), std::move(further), samples),
-          std::move(indirect), false, is_picture ? cached_paths(in, cells, {}) : nullptr),
-      reflected};
-}
-
 // Ways to compute a picture whose cells are made.
 enum class CellWay : uint8_t { gathers, cached_paths, paths };
 
@@ -161,25 +141,18 @@ CellWay cheapest_way(const MethodPlan& plan, const PathForecast& cached, bool is
 }
 
 // Adds the choice and its reasons to the decisions.
-void tell_choice(const MethodPlan& plan, const MethodInput& in, CellWay way,
-                 const PathForecast& cached, bool is_cached_possible, const GatherTrial& trial) {
-  const size_t best = trial.best();
-  if (trial.costs.size() > 1)
-    in.cells->decisions.push_back(
-        {"direct light of first viewing rays", best == 0 ? "certificates" : "light samples",
-         fmt::format("by certificates {:.3g} million rays in all, by samples {:.3g} million",
-                     trial.costs[0].all * 1e-6, trial.costs[1].all * 1e-6)});
-  if (!plan.may_end_paths_at_cells) return;
+void tell_choice(const MethodInput& in, CellWay way, const PathForecast& cached,
+                 bool is_cached_possible, const GatherTrial& trial) {
   std::string reason =
       is_cached_possible
           ? fmt::format("they would take {:.3g} viewing rays per pixel and {:.3g} million rays",
                         cached.viewing_rays, cached.rays * 1e-6)
           : fmt::format("they would take more than a quarter of {} viewing rays per pixel",
                         most_by_paths(in.settings.most_viewing_rays));
-  if (!trial.costs.empty())
+  if (trial.cost > 0)
     reason += fmt::format(
         "; gathers {:.3g} million, of which {:.3g} to gather and {:.3g} for first viewing rays",
-        trial.costs[best].all * 1e-6, trial.of_gathers * 1e-6, trial.costs[best].of_first * 1e-6);
+        trial.cost * 1e-6, trial.of_gathers * 1e-6, trial.of_first * 1e-6);
   in.cells->decisions.push_back({"paths that end at cells",
                                  way == CellWay::cached_paths ? "for the whole picture" : "no",
                                  std::move(reason)});
@@ -189,27 +162,27 @@ void tell_choice(const MethodPlan& plan, const MethodInput& in, CellWay way,
 }
 
 // Returns path tracing, plain or to the first cell, if test paths and gathers in a few windows of
-// the picture show that it costs less; null otherwise. The first of the gathered pictures then is
-// the one that costs least.
+// the picture show that it costs less; null otherwise. gathers: the integrator that reads the
+// records of `reflected`.
 std::unique_ptr<Integrator> paths_if_cheaper(const MethodPlan& plan, const MethodInput& in,
                                              const std::shared_ptr<const Cells>& cells,
-                                             std::vector<GatheredPicture>& gathered) {
+                                             const Integrator& gathers, CellsIndirect& reflected) {
   const double error = error_by_paths(in.settings.error);
   const int most = most_by_paths(in.settings.most_viewing_rays);
   const PathForecast cached = forecast_paths(*cached_paths(in, cells, {}), *in.cells->view, error,
                                              most, in.cells->seed, in.cells->counters);
-  std::vector<GatherCandidate> candidates;
-  for (const GatheredPicture& g : gathered) candidates.push_back({*g.integrator, *g.reflected});
+  const bool is_cached_possible = cached.is_within(most);
+  if (!is_cached_possible && !plan.forecast) {
+    tell_choice(in, CellWay::gathers, cached, false, {});
+    return nullptr;
+  }
   const GatherTrial trial =
-      try_gathers({candidates, *cells, *in.cells->view, gather_options(in, *cells),
+      try_gathers({gathers, reflected, *cells, *in.cells->view, gather_options(in, *cells),
                    std::max(in.settings.viewing_rays, 1), error, cached},
                   in.cells->stop, in.cells->counters);
-  const size_t best = trial.best();
-  std::swap(gathered[0], gathered[best]);
-  if (trial.costs.empty()) return nullptr;
-  const bool is_cached_possible = plan.may_end_paths_at_cells && cached.is_within(most);
-  const CellWay way = cheapest_way(plan, cached, is_cached_possible, trial.costs[best].all);
-  tell_choice(plan, in, way, cached, is_cached_possible, trial);
+  if (!(trial.cost > 0)) return nullptr;
+  const CellWay way = cheapest_way(plan, cached, is_cached_possible, trial.cost);
+  tell_choice(in, way, cached, is_cached_possible, trial);
   switch (way) {
     case CellWay::cached_paths:
       return cached_paths(in, cells, sampling_by_paths(cached, error, most));
@@ -224,7 +197,7 @@ std::unique_ptr<Integrator> paths_if_cheaper(const MethodPlan& plan, const Metho
 // Makes cells and their gathers, then the integrator that reads them.
 std::unique_ptr<Integrator> make_by_cells(const MethodPlan& plan, const MethodInput& in) {
   const Occlusion by = occlusion_for(in, true);
-  std::shared_ptr<const DirectLight> at_cells = make_direct(in, by, plan.at_cells);
+  std::unique_ptr<DirectLight> at_cells = make_direct(in, by, plan.at_cells);
   const bool is_picture = in.cells->view != nullptr;
   const std::shared_ptr<const Cells> cells = cells_of(plan, in, *at_cells, is_picture ? 0.4 : 1);
   if (!cells) {
@@ -233,22 +206,25 @@ std::unique_ptr<Integrator> make_by_cells(const MethodPlan& plan, const MethodIn
         {"all light", "path tracing instead", "there were more cells than planned"});
     return make_paths(plan, in);
   }
-  const std::shared_ptr<const DirectLight> further =
+  std::unique_ptr<DirectLight> further =
       plan.further.draws > 0 ? make_direct(in, by, plan.further) : std::move(at_cells);
-  std::vector<GatheredPicture> gathered;
-  gathered.push_back(make_gathered(in, cells, make_direct(in, by, plan.first), further));
-  if (is_picture && plan.first_by_samples.draws > 0)
-    gathered.push_back(
-        make_gathered(in, cells, make_direct(in, by, plan.first_by_samples), further));
-  if (is_picture)
-    if (std::unique_ptr<Integrator> paths = paths_if_cheaper(plan, in, cells, gathered))
+  constexpr auto all = std::numeric_limits<uint32_t>::max();
+  const uint32_t samples = is_picture ? uint32_t(in.settings.viewing_rays) : all;
+  auto indirect = std::make_unique<CellsIndirect>(cells, nullptr);
+  CellsIndirect& reflected = *indirect;
+  auto gathers = std::make_unique<WaveIntegrator>(
+      in.scene,
+      std::make_unique<StagedDirect>(make_direct(in, by, plan.first), std::move(further), samples),
+      std::move(indirect), false, is_picture ? cached_paths(in, cells, {}) : nullptr);
+  if (plan.may_end_paths_at_cells)
+    if (std::unique_ptr<Integrator> paths = paths_if_cheaper(plan, in, cells, *gathers, reflected))
       return paths;
   std::shared_ptr<const GatherRecords> records;
   if (is_picture) records = gather(in, *cells);
   if (in.cells->enough != nullptr) in.cells->quick = make_quick(in, by, cells, records);
   if (is_picture && !records) return nullptr;
-  gathered[0].reflected->set_records(std::move(records));
-  return std::move(gathered[0].integrator);
+  reflected.set_records(std::move(records));
+  return gathers;
 }
 
 }  // namespace

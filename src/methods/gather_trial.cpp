@@ -126,34 +126,7 @@ double cost_of_further(const std::vector<double>& wanted, double of_first,
   return sum / double(wanted.size());
 }
 
-// Sums over the windows for one candidate.
-struct CandidateSums {
-  double of_first = 0;         // cost of the first viewing rays
-  std::vector<double> wanted;  // rays of each pixel, if it were alone
-};
-
-// Traces the first viewing rays of a window by one candidate.
-void add_first_rays(const PictureView& view, const GatherTrialInput& in,
-                    const Integrator& integrator, CandidateSums& sums, Counters& counters) {
-  Counters own;
-  const ViewingRays rays = rays_of(view, in);
-  const std::unique_ptr<IntegratorScratch> scratch = integrator.make_scratch();
-  RadianceBatch out;
-  out.reset(rays.size());
-  out.known.assign(rays.size(), {});
-  integrator.radiance(rays, *scratch, out, own);
-  sums.of_first += cost_of(own);
-  counters += own;
-  add_wanted(own_wanted(out, in), sums.wanted);
-}
-
 }  // namespace
-
-size_t GatherTrial::best() const {
-  const auto least = std::min_element(costs.begin(), costs.end(),
-                                      [](const Cost& a, const Cost& b) { return a.all < b.all; });
-  return least == costs.end() ? 0 : size_t(least - costs.begin());
-}
 
 GatherTrial try_gathers(const GatherTrialInput& in, const StopFlag& stop, Counters& counters) {
   GatherOptions options = in.options;
@@ -165,29 +138,33 @@ GatherTrial try_gathers(const GatherTrialInput& in, const StopFlag& stop, Counte
                looked_at = windows.count() * side * side;
   GatherTrial trial;
   if (image.width() < side || image.height() < side) return trial;
-  std::vector<CandidateSums> sums(in.candidates.size());
-  double of_gathers = 0;
+  double of_gathers = 0, of_first = 0;
+  std::vector<double> wanted;
   for (int i = 0; i < windows.count(); ++i) {
     PictureView view = in.view;
     view.window = window_of(image, windows, i);
-    Counters gathering;
-    const std::shared_ptr<const GatherRecords> records =
+    Counters gathering, first;
+    std::shared_ptr<const GatherRecords> records =
         GatherRecords::make(in.cells, view, options, nullptr, stop, gathering);
     if (!records) return trial;
+    in.reflected.set_records(std::move(records));
+    const ViewingRays rays = rays_of(view, in);
+    const std::unique_ptr<IntegratorScratch> scratch = in.gathers.make_scratch();
+    RadianceBatch out;
+    out.reset(rays.size());
+    out.known.assign(rays.size(), {});
+    in.gathers.radiance(rays, *scratch, out, first);
     of_gathers += cost_of(gathering);
+    of_first += cost_of(first);
     counters += gathering;
-    for (size_t k = 0; k < sums.size(); ++k) {
-      in.candidates[k].reflected.set_records(records);
-      add_first_rays(view, in, in.candidates[k].integrator, sums[k], counters);
-    }
+    counters += first;
+    add_wanted(own_wanted(out, in), wanted);
   }
   trial.of_gathers = of_gathers / looked_at * pixels;
-  for (const CandidateSums& s : sums) {
-    const double of_ray = s.of_first / looked_at / tried_rays(in),
-                 of_first = of_ray * in.viewing_rays * pixels;
-    trial.costs.push_back(
-        {trial.of_gathers + of_first + pixels * cost_of_further(s.wanted, of_ray, in), of_first});
-  }
+  const double of_viewing_ray = of_first / looked_at / tried_rays(in);
+  trial.of_first = of_viewing_ray * in.viewing_rays * pixels;
+  trial.cost =
+      trial.of_gathers + trial.of_first + pixels * cost_of_further(wanted, of_viewing_ray, in);
   return trial;
 }
 

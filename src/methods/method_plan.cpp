@@ -12,16 +12,17 @@ namespace troffer {
 
 namespace {
 
-// Settings of direct light at the first viewing rays of a pixel.
+// Settings of direct light at the first viewing rays of a pixel. In coarse pictures a hit gets
+// `draws` light samples if certificates would cost it more rays. Their noise is below the allowed
+// error there.
 CertifiedSettings settings_of_first(const MethodInput& in) {
-  return certified_settings(in.settings.error, in.scene.scene.lights.size(),
-                            in.settings.viewing_rays);
-}
-// The same with light samples at hits where certificates would cost more rays.
-CertifiedSettings settings_of_first_by_samples(const MethodInput& in) {
-  constexpr int draws = 16;  // a power of two: stratified best
-  CertifiedSettings s = settings_of_first(in);
-  if (!is_left_out<"light samples at first hits">()) s.draws = draws;
+  constexpr double coarse = 0.2;
+  constexpr int draws = 32;
+  CertifiedSettings s =
+      certified_settings(in.settings.error, in.scene.scene.lights.size(), in.settings.viewing_rays);
+  if (in.cells != nullptr && in.cells->view != nullptr && in.settings.error >= coarse &&
+      !is_left_out<"light samples at coarse errors">())
+    s.draws = draws;
   return s;
 }
 
@@ -85,7 +86,6 @@ void add_direct_parts(MethodPlan& plan, const MethodInput& in) {
 void plan_cells(MethodPlan& plan, const MethodInput& in) {
   plan.light = PlannedLight::cells;
   plan.first = settings_of_first(in);
-  plan.first_by_samples = settings_of_first_by_samples(in);
   plan.further = settings_of_further(in);
   plan.at_cells = settings_of_cells(in);
   plan.most_cells = in.cells->most_cells;

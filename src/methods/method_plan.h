@@ -41,9 +41,6 @@ struct MethodPlan {
 
   // certified: settings of direct light at first and further viewing rays, and at cells.
   CertifiedSettings first{}, further{}, at_cells{};
-  // At first viewing rays of a picture, with light samples where certificates cost more. A trial
-  // chooses between this and `first` (gather_trial.h). Without draws: there is no choice.
-  CertifiedSettings first_by_samples{};
   // Limit of the number of cells. Beyond it, paths replace cells if there is a forecast. Otherwise
   // make_integrator() returns null.
   double most_cells = std::numeric_limits<double>::infinity();

@@ -130,8 +130,17 @@ TEST_CASE("eyes, sunlight and electric light are assessed on request") {
   const double full = json["electric"][0]["full_load_hours"];
   CHECK(full >= 0);
   CHECK(full < double(json["electric"][0]["occupied_hours"]));
-  CHECK(double(json["electric"][0]["mean_lx"]) > 100);
+  const double mean_lx = json["electric"][0]["mean_lx"];
+  CHECK(mean_lx > 100);
+  const std::string short_of = "the target is not reached, even at full output, by " +
+                               json["electric"][0]["group"].get<std::string>();
+  const auto says_short = [&] {
+    return read_file(test.folder.path("year/annual.html")).find(short_of) != std::string::npos;
+  };
+  CHECK(says_short() == (mean_lx < 300));
   CHECK(test.has("electric.csv"));
+  REQUIRE(test.run({"--electric", "*", "--electric-target", "1000000"}).status == 0);
+  CHECK(says_short());
 }
 
 TEST_CASE("--ill writes text beside the arrays") {

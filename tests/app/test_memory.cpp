@@ -155,7 +155,7 @@ TEST_CASE("memory does not grow with the number of rays that are asked for") {
       folder.write("s.pbrt", scene_with("AttributeBegin\nTranslate 0 0 2.5\nAreaLightSource "
                                         "\"diffuse\" \"rgb L\" [12 11 10]\nShape \"disk\" "
                                         "\"float radius\" .3\nAttributeEnd\n"));
-  const std::string points = folder.write("p.csv", "0,0,1,0,0,1\n");
+  const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n0,0,1,0,0,1\n");
   using Words = std::vector<std::string>;
   const Words render{"render", scene,   "-o",      folder.path("o.exr"), "--size",
                      "48x32",  "--spp", "1000000", "--time-limit",       "0.5"},

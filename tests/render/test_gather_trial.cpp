@@ -11,27 +11,22 @@ using namespace troffer::test;
 
 namespace {
 
-// Returns a decision by its name: by default that between gathers and cached paths.
-PlannedPart decision_of(const RenderResult& r, const char* part = "paths that end at cells") {
+// Returns the decision between gathers and cached paths.
+PlannedPart decision_of(const RenderResult& r) {
   for (const PlannedPart& p : r.statistics.plan.parts)
-    if (p.part == part) return p;
+    if (p.part == "paths that end at cells") return p;
   return {};
 }
 
-// Renders a room with a lamp in view: matte, or coated with wide gloss.
-RenderResult lit_room(int width, int height, float error, Indirect indirect = Indirect::automatic,
-                      bool is_coated = false) {
+// Renders a matte room with a lamp in view.
+RenderResult matte_room(int width, int height, float error) {
   Scene s;
-  Material m;
-  m.base_color = {Rgb{0.6f}, no_texture};
-  m.roughness = {0.5f, no_texture, 0};  // of the coat
-  if (is_coated) m.kind = MaterialKind::coated_diffuse;
-  const uint32_t grey = add_material(s, m);
+  const uint32_t grey = add_diffuse(s, Rgb{0.6f});
   add_box_inside(s, grey, {-2, -2, 0}, {2, 2, 2.5f});
   add_ceiling_light(s, 1, 2.4f, Rgb{10});
   const PreparedScene scene(std::move(s));
   RenderOptions o;
-  o.indirect = indirect;
+  o.indirect = Indirect::automatic;
   o.error = error;
   o.width = width;
   o.height = height;
@@ -43,7 +38,7 @@ RenderResult lit_room(int width, int height, float error, Indirect indirect = In
 
 TEST_CASE("gathers: what surrogate samples resolve does not count as noise") {
   // The outline of the lamp varies within many pixels, but surrogate samples resolve it.
-  const RenderResult r = lit_room(128, 96, 0.1f);
+  const RenderResult r = matte_room(128, 96, 0.1f);
   const PlannedPart decision = decision_of(r);
   REQUIRE(decision.reason.find("gathers") != std::string::npos);
   CHECK(decision.choice == "no");
@@ -57,16 +52,5 @@ TEST_CASE("gathers: what surrogate samples resolve does not count as noise") {
 }
 
 TEST_CASE("gathers: small pictures, too, compare them with cached paths") {
-  CHECK(decision_of(lit_room(32, 24, 0.02f)).reason.find("gathers") != std::string::npos);
-}
-
-TEST_CASE("first viewing rays take light samples where certificates would cost more") {
-  // Certificates of matte light are exact sums; those of gloss need many points on the lamp.
-  const auto chosen = [](bool is_coated) {
-    return decision_of(lit_room(64, 48, 0.05f, Indirect::cells, is_coated),
-                       "direct light of first viewing rays")
-        .choice;
-  };
-  CHECK(chosen(false) == "certificates");
-  CHECK(chosen(true) == "light samples");
+  CHECK(decision_of(matte_room(32, 24, 0.02f)).reason.find("gathers") != std::string::npos);
 }
