@@ -216,7 +216,8 @@ bool PathIntegrator::ends_at_cell(Walk& walk, const Vertex& v, Bsdf& bsdf,
   }
   const Rgb weight = walk.throughput * diffuse * (inv_pi_f / chance);
   out.indirect[walk.index] += weight * irradiance;
-  out.drawn_error[walk.index] += luminance(weight) * half_difference;
+  if (!out.drawn_error.empty())  // empty for measuring points
+    out.drawn_error[walk.index] += luminance(weight) * half_difference;
   return true;
 }
 
