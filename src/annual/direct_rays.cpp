@@ -50,7 +50,7 @@ void DirectRays::add_ground() {
     }
 }
 
-// To points of the sun's disc. All rays of an hour have the cosine of its middle.
+// Rays to points of the sun's disc. All rays of an hour have the cosine of its middle.
 void DirectRays::add_sun() {
   Random random(hash_of(outside_.seed, uint64_t(sensor_), stream::annual_direct_sun));
   const YearSkies& skies = outside_.skies;

@@ -11,7 +11,7 @@
 
 namespace troffer {
 
-// What is computed of one state.
+// The results of one state.
 struct YearOfLight {
   const PreparedScene& scene;
   const YearOutside& outside;

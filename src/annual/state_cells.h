@@ -1,4 +1,4 @@
-// What one state of a window group changes in the cells and rows that all states share
+// Changes that one state of a window group makes in the cells and rows that all states share
 // (transport_cells.h): differences of shared rows, and cells of its own, with their rows. Own cells
 // lie on surfaces that only this state shows, and on all else that only it sees, such as the ground
 // behind its windows.

@@ -2,8 +2,8 @@
 // The latter is computed by certified visibility in each mirror's reflected scene, and counts as
 // indirect light.
 //
-// add_images() in methods/methods.cpp wraps the direct light in this class where the scene has flat
-// mirrors.
+// make_direct() in methods/certified_method.cpp wraps the direct light in this class where the
+// scene has flat mirrors.
 #pragma once
 
 #include "certified/certified_direct.h"

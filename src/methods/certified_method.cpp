@@ -73,7 +73,8 @@ std::shared_ptr<const Occluders> occluders_for(const MethodInput& in) {
   return std::make_shared<const Occluders>(in.scene.scene, &in.scene.glass);
 }
 
-// What certificates are proved against: the scene, and its images in flat mirrors if there are any.
+// Surfaces that certificates are proved against: those of the scene, and of its images in flat
+// mirrors if there are any.
 struct Occlusion {
   std::shared_ptr<const Occluders> scene;
   std::shared_ptr<const MirrorImages> images;
@@ -128,9 +129,9 @@ std::unique_ptr<Integrator> cached_paths(const MethodInput& in,
 // Ways to compute a picture whose cells are made.
 enum class CellWay : uint8_t { gathers, cached_paths, paths };
 
-// Returns the way of least cost, by costs that are uncertain. Plain paths are known best, so the
-// other ways have to promise clearly less. So have cached paths beside gathers: the forecast of
-// paths sees few of their rare bright rays.
+// Returns the way of least cost, by costs that are uncertain. The cost of plain paths is known
+// best, so other ways have to promise clearly less. Cached paths have to promise clearly less than
+// gathers, because their forecast sees few rare bright rays.
 CellWay cheapest_way(const MethodPlan& plan, const PathForecast& cached, bool is_cached_possible,
                      double of_gathers) {
   constexpr double uncertainty = 1.25;  // factor of spread that bench/costs prints
