@@ -116,6 +116,7 @@ def main():
     parser.add_argument("--rules", help="names, separated by commas; without: all")
     parser.add_argument("--rooms", type=int, default=20, help="number of random rooms")
     parser.add_argument("--first", type=int, default=100, help="seed of the first room")
+    parser.add_argument("--list", help="seeds of the rooms, separated by commas, in place of these two")
     parser.add_argument("--size", default="80x60")
     parser.add_argument("--errors", default=".05")
     parser.add_argument("--seeds", type=int, default=1, help="pictures of each scene and error")
@@ -137,7 +138,9 @@ def main():
     rows = {rule: [] for rule in rules}
     # A shell that starts it in the background ignores this signal.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    scenes = [rooms.Room(seed, a) for seed in range(a.first, a.first + a.rooms)] + public_scenes(a)
+    seeds = ([int(s) for s in a.list.split(",") if s] if a.list is not None
+             else range(a.first, a.first + a.rooms))
+    scenes = [rooms.Room(seed, a) for seed in seeds] + public_scenes(a)
     try:
         for k, scene in enumerate(scenes):
             print(f"{k + 1} of {len(scenes)}: {scene.seed}", file=sys.stderr, flush=True)

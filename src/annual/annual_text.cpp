@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array columns{
+constexpr std::array sensor_columns{
     FigureColumn{SensorFigure::da, "da", "%", "Daylight autonomy"},
     FigureColumn{SensorFigure::da_open, "da_open", "%", "Daylight autonomy, blinds open"},
     FigureColumn{SensorFigure::cda, "cda", "%", "Continuous daylight autonomy"},
@@ -31,7 +31,7 @@ constexpr std::array columns{
     FigureColumn{SensorFigure::morning_lx, "morning_lx", "lx", "Clear equinox, 9 h"},
     FigureColumn{SensorFigure::afternoon_lx, "afternoon_lx", "lx", "Clear equinox, 15 h"},
 };
-static_assert(columns.size() == sensor_figures);
+static_assert(sensor_columns.size() == sensor_figures);
 
 // Names in scenes may be invalid UTF-8, which JSON cannot hold.
 std::string dump(const Json& json) {
@@ -70,7 +70,7 @@ const char* verdict_name(YearVerdict v) {
 }
 
 std::span<const FigureColumn> figure_columns() {
-  return columns;
+  return sensor_columns;
 }
 
 std::vector<double> hours_in_states(const AnnualReport& r, size_t path) {
@@ -161,7 +161,7 @@ std::string annual_json(const AnnualReport& r) {
 
 std::string annual_metrics(const AnnualReport& r) {
   std::string out = "grid,x,y,z,nx,ny,nz";
-  for (const FigureColumn& c : columns) out += fmt::format(",{0},{0}_error", c.name);
+  for (const FigureColumn& c : sensor_columns) out += fmt::format(",{0},{0}_error", c.name);
   out += "\n";
   for (const AnnualGrid& g : r.grids)
     for (size_t s = g.first; s < g.first + g.count; ++s) {
@@ -169,7 +169,7 @@ std::string annual_metrics(const AnnualReport& r) {
       out +=
           fmt::format("{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.6g}", csv_field(g.name),
                       p.position.x, p.position.y, p.position.z, p.normal.x, p.normal.y, p.normal.z);
-      for (const FigureColumn& c : columns) {
+      for (const FigureColumn& c : sensor_columns) {
         const YearFigure f = r.result.figures.of(s, c.figure);
         out += fmt::format(",{:.6g},{:.3g}", f.value, f.error);
       }

@@ -7,12 +7,6 @@
 
 namespace troffer {
 
-namespace {
-
-constexpr size_t replicates = replicate_count;
-
-}  // namespace
-
 DirectRays::DirectRays(const YearOutside& outside, const StateFamily& family, size_t sensor,
                        Parts parts)
     : outside_(outside),
@@ -31,7 +25,7 @@ DirectRays::DirectRays(const YearOutside& outside, const StateFamily& family, si
 void DirectRays::add_sky() {
   Random random(hash_of(outside_.seed, uint64_t(sensor_), stream::annual_direct_sky));
   for (const ReinhartPatch& p : outside_.skies.fine.sky.patches())
-    for (size_t r = 0; r < replicates; ++r) {
+    for (size_t r = 0; r < replicate_count; ++r) {
       const double u = random.next_double();
       const Vec3 d = outside_.world(p.direction(u, random.next_double()));
       add(d, dot(d, place_.normal));
@@ -42,7 +36,7 @@ void DirectRays::add_sky() {
 void DirectRays::add_ground() {
   Random random(hash_of(outside_.seed, uint64_t(sensor_), stream::annual_direct_ground));
   for (const ReinhartPatch& p : outside_.skies.coarse.sky.patches())
-    for (size_t r = 0; r < replicates; ++r) {
+    for (size_t r = 0; r < replicate_count; ++r) {
       const double u = random.next_double();
       Vec3d d = p.direction(u, random.next_double());
       d.z = -d.z;
@@ -60,7 +54,7 @@ void DirectRays::add_sun() {
     const float cosine = dot(to_sun, place_.normal);
     if (cosine <= 0) continue;
     sun_hours_.push_back(h);
-    for (size_t r = 0; r < replicates; ++r) add(within_sun(to_sun, random.next_vec2()), cosine);
+    for (size_t r = 0; r < replicate_count; ++r) add(within_sun(to_sun, random.next_vec2()), cosine);
   }
 }
 
@@ -105,11 +99,11 @@ std::vector<SunHour> DirectRays::sun_in(const StateOfFamily& state,
   const std::vector<float> open = open_in(state, fixed);
   std::vector<SunHour> hours;
   for (size_t i = 0; i < sun_hours_.size(); ++i) {
-    const size_t ray = first_of_sun_ + i * replicates;
+    const size_t ray = first_of_sun_ + i * replicate_count;
     const float lx = outside_.skies.sun_lx[sun_hours_[i]] * cosine(ray);
     float sum = 0;
-    for (size_t r = 0; r < replicates; ++r) sum += lx * open[ray + r];
-    if (sum != 0) hours.push_back({sun_hours_[i], sum / float(replicates)});
+    for (size_t r = 0; r < replicate_count; ++r) sum += lx * open[ray + r];
+    if (sum != 0) hours.push_back({sun_hours_[i], sum / float(replicate_count)});
   }
   return hours;
 }

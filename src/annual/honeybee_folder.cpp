@@ -16,7 +16,7 @@ namespace {
 
 using HoneybeeJson = nlohmann::ordered_json;
 
-constexpr const char* parts[] = {"total", "direct"};
+constexpr const char* part_names[] = {"total", "direct"};
 constexpr const char* errors = "/standard_error";  // our own addition to the layout
 
 // Letters, digits, '_', '-' and '.'; others become '_'.
@@ -119,7 +119,7 @@ HoneybeeFolder::HoneybeeFolder(std::string path, const std::vector<HoneybeeGrid>
     names.id = unique_id(p.name, used_paths);
     for (size_t s = 0; s < p.states; ++s) {
       names.states.push_back(p.name == static_path ? "default" : fmt::format("{}_{}", s, names.id));
-      for (const char* part : parts) make_folder(folder_of(names, s) + part);
+      for (const char* part : part_names) make_folder(folder_of(names, s) + part);
     }
   }
   make_folder(path_ + errors);
@@ -145,7 +145,7 @@ void HoneybeeFolder::open(GridFiles& grid) const {
       const auto open_part = [&](const char* part) {
         return ArrayFiles(folder_of(p, s) + part + "/" + grid.id, grid.sensors, hours_, format_);
       };
-      files.push_back({open_part(parts[0]), open_part(parts[1])});
+      files.push_back({open_part(part_names[0]), open_part(part_names[1])});
     }
   }
 }
@@ -156,7 +156,7 @@ HoneybeeFolder::~HoneybeeFolder() {
   std::error_code ignored;  // fails for folders that are not empty
   for (const PathNames& p : paths_) {
     for (size_t s = 0; s < p.states.size(); ++s)
-      for (const char* part : {parts[0], parts[1], ""})
+      for (const char* part : {part_names[0], part_names[1], ""})
         std::filesystem::remove(folder_of(p, s) + part, ignored);
     for (const std::string& state : p.states)
       std::filesystem::remove(path_ + "/" + p.id + "/" + state, ignored);

@@ -11,7 +11,6 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t replicates = replicate_count;
 constexpr int cosine_points = 4;  // per side of a patch, for the mean cosine on a tilted sensor
 
 // Hours added up together: floats of one cache line. Sums of all replicates stay in registers.
@@ -24,17 +23,17 @@ void sum_terms(const LightTerm* terms, size_t n, size_t first, size_t count, flo
                size_t stride) {
   size_t done = 0;
   for (; done + lanes <= count; done += lanes) {
-    HourLanes sums[replicates] = {};
+    HourLanes sums[replicate_count] = {};
     for (size_t t = 0; t < n; ++t) {
       HourLanes v;
       std::memcpy(&v, terms[t].luminance + first + done, sizeof v);
-      for (size_t r = 0; r < replicates; ++r) sums[r] += terms[t].coefficients[r] * v;
+      for (size_t r = 0; r < replicate_count; ++r) sums[r] += terms[t].coefficients[r] * v;
     }
-    for (size_t r = 0; r < replicates; ++r)
+    for (size_t r = 0; r < replicate_count; ++r)
       std::memcpy(out + r * stride + done, &sums[r], sizeof sums[r]);
   }
   for (; done < count; ++done)
-    for (size_t r = 0; r < replicates; ++r) {
+    for (size_t r = 0; r < replicate_count; ++r) {
       float sum = 0;
       for (size_t t = 0; t < n; ++t)
         sum += terms[t].coefficients[r] * terms[t].luminance[first + done];
@@ -53,7 +52,7 @@ SensorHours::SensorHours(const YearOfLight& light, size_t sensor, const CellHit&
   add_reflected_sky(sensor);
 }
 
-void SensorHours::add(const float* luminance, const std::array<float, replicates>& coefficients) {
+void SensorHours::add(const float* luminance, const std::array<float, replicate_count>& coefficients) {
   const auto is_zero = [](float c) { return c == 0; };
   if (!std::all_of(coefficients.begin(), coefficients.end(), is_zero))
     terms_.push_back({luminance, coefficients});
@@ -76,25 +75,25 @@ double SensorHours::cosine_over(const ReinhartPatch& p) const {
 void SensorHours::add_sky(const DirectRays& rays, std::span<const float> open) {
   const PatchHours& fine = light_.outside.skies.fine;
   for (size_t p = 0; p < fine.sky.size(); ++p) {
-    const std::span<const float> of_patch = open.subspan(p * replicates, replicates);
+    const std::span<const float> of_patch = open.subspan(p * replicate_count, replicate_count);
     if (std::all_of(of_patch.begin(), of_patch.end(), [](float o) { return o == 0; })) continue;
     const ReinhartPatch& patch = fine.sky.patches()[p];
-    std::array<float, replicates> c{};
+    std::array<float, replicate_count> c{};
     if (std::all_of(of_patch.begin(), of_patch.end(), [](float o) { return o > 0.99999f; }))
       c.fill(float(cosine_over(patch)));
     else
-      for (size_t r = 0; r < replicates; ++r)
-        c[r] = of_patch[r] * rays.cosine(p * replicates + r) * float(patch.solid_angle);
+      for (size_t r = 0; r < replicate_count; ++r)
+        c[r] = of_patch[r] * rays.cosine(p * replicate_count + r) * float(patch.solid_angle);
     add(fine.of(p, light_.outside.skies.hours()).data(), c);
   }
 }
 
 void SensorHours::add_ground(const DirectRays& rays, std::span<const float> open) {
   const YearSkies& skies = light_.outside.skies;
-  std::array<float, replicates> sum{};
+  std::array<float, replicate_count> sum{};
   size_t ray = rays.first_of_ground();
   for (const ReinhartPatch& p : skies.coarse.sky.patches())
-    for (size_t r = 0; r < replicates; ++r, ++ray)
+    for (size_t r = 0; r < replicate_count; ++r, ++ray)
       if (open[ray] != 0) sum[r] += open[ray] * rays.cosine(ray) * float(p.solid_angle);
   add(skies.ground.data(), sum);
 }
@@ -105,7 +104,7 @@ void SensorHours::add_sun(const DirectRays& rays, std::span<const float> open) {
     SunTerm sun{h, {}};
     const float lx = light_.outside.skies.sun_lx[h] * rays.cosine(ray);
     bool is_lit = false;
-    for (size_t r = 0; r < replicates; ++r, ++ray) {
+    for (size_t r = 0; r < replicate_count; ++r, ++ray) {
       sun.lx[r] = lx * open[ray];
       is_lit = is_lit || sun.lx[r] != 0;
     }
@@ -117,8 +116,8 @@ void SensorHours::add_reflected_sky(size_t sensor) {
   const YearSkies& skies = light_.outside.skies;
   const size_t patches = skies.coarse.sky.size();
   for (size_t p = 0; p <= patches; ++p) {
-    std::array<float, replicates> c{};
-    for (size_t r = 0; r < replicates; ++r) c[r] = light_.reflected[r].of(sensor)[p];
+    std::array<float, replicate_count> c{};
+    for (size_t r = 0; r < replicate_count; ++r) c[r] = light_.reflected[r].of(sensor)[p];
     add(p < patches ? skies.coarse.of(p, skies.hours()).data() : skies.ground.data(), c);
   }
 }
@@ -130,7 +129,7 @@ void SensorHours::compute(RunOfHours& out) {
   for (auto& of_replicate : out.sun) of_replicate.fill(0);
   for (; next_sun_ < suns_.size() && suns_[next_sun_].hour < out.first + out.count; ++next_sun_) {
     const SunTerm& sun = suns_[next_sun_];
-    for (size_t r = 0; r < replicates; ++r) {
+    for (size_t r = 0; r < replicate_count; ++r) {
       out.sun[r][sun.hour - out.first] = sun.lx[r];
       out.total[r][sun.hour - out.first] += sun.lx[r];
     }
@@ -140,7 +139,7 @@ void SensorHours::compute(RunOfHours& out) {
 void SensorHours::add_reflected_sun(RunOfHours& out) const {
   const YearSkies& skies = light_.outside.skies;
   const size_t first_sun = skies.coarse.sky.size() + 1;
-  for (size_t r = 0; r < replicates; ++r) {
+  for (size_t r = 0; r < replicate_count; ++r) {
     const ReflectedReplicate& replicate = light_.reflected[r];
     const float* c = replicate.of(sensor_).data() + first_sun;
     for (size_t i = 0; i < out.count; ++i) {
