@@ -54,7 +54,8 @@ void DirectRays::add_sun() {
     const float cosine = dot(to_sun, place_.normal);
     if (cosine <= 0) continue;
     sun_hours_.push_back(h);
-    for (size_t r = 0; r < replicate_count; ++r) add(within_sun(to_sun, random.next_vec2()), cosine);
+    for (size_t r = 0; r < replicate_count; ++r)
+      add(within_sun(to_sun, random.next_vec2()), cosine);
   }
 }
 

@@ -52,7 +52,8 @@ SensorHours::SensorHours(const YearOfLight& light, size_t sensor, const CellHit&
   add_reflected_sky(sensor);
 }
 
-void SensorHours::add(const float* luminance, const std::array<float, replicate_count>& coefficients) {
+void SensorHours::add(const float* luminance,
+                      const std::array<float, replicate_count>& coefficients) {
   const auto is_zero = [](float c) { return c == 0; };
   if (!std::all_of(coefficients.begin(), coefficients.end(), is_zero))
     terms_.push_back({luminance, coefficients});
