@@ -34,7 +34,7 @@ bool contains(const std::string& text, const std::string& part) {
 
 int stops() {
   const char* asked = std::getenv("TROFFER_STOPS");
-  return asked != nullptr ? std::atoi(asked) : 100;
+  return asked != nullptr ? std::atoi(asked) : 48;
 }
 
 // A command, and the files that it writes into the folder.

@@ -53,7 +53,7 @@ TEST_CASE("light from a cove agrees with paths in all parts of a room") {
   const Camera camera = look_at({0.5f, 0.5f, 1.5f}, {3.2f, 4.2f, 0.9f}, {0, 0, 1}, 75);
   RenderOptions path;
   path.method = Method::path;
-  path.spp = path.max_spp = 1024;
+  path.spp = path.max_spp = 512;
   const Image truth = reflected_light(scene, camera, width, height, path);
   RenderOptions ours;
   ours.error = 0.05;

@@ -25,6 +25,16 @@ RenderOptions options_for(Method method) {
   return o;
 }
 
+const RenderResult& mixed_room_by_paths() {
+  static const RenderResult result = [] {
+    const PreparedScene scene(mixed_room());
+    RenderOptions o = options_for(Method::path);
+    o.spp = 2048;
+    return render_now(scene, mixed_room_camera(), o);
+  }();
+  return result;
+}
+
 size_t black_pixels(const Image& image) {
   size_t n = 0;
   for (const Rgb& p : image.pixels) n += p.is_black() ? 1 : 0;
@@ -42,9 +52,7 @@ double rms_told(const RenderResult& r) {
 
 TEST_CASE("a picture with zero time is complete, has the right mean, and reports its error") {
   const PreparedScene scene(mixed_room());
-  RenderOptions right = options_for(Method::path);
-  right.spp = 512;
-  const RenderResult reference = render_now(scene, mixed_room_camera(), right);
+  const RenderResult& reference = mixed_room_by_paths();
   for (const Method method : {Method::path, Method::certified, Method::kj92}) {
     CAPTURE(std::string(method.row().name));
     RenderOptions o = options_for(method);
@@ -119,9 +127,7 @@ TEST_CASE("an unfinished picture keeps its pixels; only the rest is filled") {
 TEST_CASE(
     "a time limit after cells are made gives a picture by cells, better than by as many paths") {
   const PreparedScene scene(mixed_room());
-  RenderOptions right = options_for(Method::path);
-  right.spp = 2048;
-  const RenderResult reference = render_now(scene, mixed_room_camera(), right);
+  const RenderResult& reference = mixed_room_by_paths();
   RenderOptions o = options_for(Method::certified);
   o.indirect = Indirect::cells;
   o.error = 0.05;

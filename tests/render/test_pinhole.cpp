@@ -53,8 +53,8 @@ TEST_CASE("light through a small hole: less asked error never gives much more") 
   const PreparedScene scene(pinhole());
   const Camera camera = look_at({0, 0, 1.1f}, {0, 0, 0}, {0, 1, 0}, 50);
   RenderOptions o;
-  o.width = 96;
-  o.height = 64;
+  o.width = 60;
+  o.height = 40;
   o.threads = 2;
   RenderOptions exact = o;
   exact.error = 0.005;

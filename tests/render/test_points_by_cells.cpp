@@ -107,7 +107,7 @@ TEST_CASE("behind slats, points by cells are right where narrow cells are refine
 TEST_CASE("cells for many accurate points have more rays and less noise") {
   const PreparedScene scene(room_behind_a_partition());
   const List list(scene, points_behind_the_partition(16));
-  constexpr int samples = 1 << 14;
+  constexpr int samples = 1 << 13;
   uint64_t rays = 0;
   // Cells of different seeds, read by the same gather rays.
   std::vector<double> first;  // of the last call
