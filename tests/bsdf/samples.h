@@ -13,7 +13,11 @@
 
 namespace troffer::test {
 
-// Materials with their tables. Bsdfs point into the tables, so this must outlive them.
+using NamedMaterials = std::vector<std::pair<std::string, Material>>;
+
+// Materials with their tables. Bsdfs point into the tables, so this must outlive them. Tables take
+// long to build, and materials of equal index share them: one set of many specimens costs less than
+// many sets.
 struct Specimens {
   std::vector<std::string> names;
   std::vector<Material> materials;
@@ -21,8 +25,10 @@ struct Specimens {
   BsdfTables tables;
 
   explicit Specimens(const std::vector<Material>& m) : materials(m), tables(materials) {}
-  Specimens(std::initializer_list<std::pair<std::string, Material>> list)
+  explicit Specimens(const NamedMaterials& list)
       : names(names_of(list)), materials(materials_of(list)), tables(materials) {}
+  Specimens(std::initializer_list<std::pair<std::string, Material>> list)
+      : Specimens(NamedMaterials(list)) {}
   Bsdf at(size_t i, bool is_front = true) const {
     TexturePlace place(Vec2{0.5f, 0.5f});
     place.grain = {std::cos(0.4f), std::sin(0.4f)};
@@ -31,13 +37,12 @@ struct Specimens {
   size_t size() const { return materials.size(); }
 
  private:
-  using List = std::initializer_list<std::pair<std::string, Material>>;
-  static std::vector<std::string> names_of(const List& list) {
+  static std::vector<std::string> names_of(const NamedMaterials& list) {
     std::vector<std::string> v;
     for (const auto& [name, m] : list) v.push_back(name);
     return v;
   }
-  static std::vector<Material> materials_of(const List& list) {
+  static std::vector<Material> materials_of(const NamedMaterials& list) {
     std::vector<Material> v;
     for (const auto& [name, m] : list) v.push_back(m);
     return v;

@@ -73,7 +73,7 @@ void check_sampling(const std::string& name, const Bsdf& b, float cosine, int te
     CHECK(deltas + int(observed.back()) >= n);
     return;
   }
-  std::vector<double> expected = integrated_pdf(b, wo, 1e-5);
+  std::vector<double> expected = integrated_pdf(b, wo, 4e-5);
   double mass = 0;
   for (double& e : expected) {
     mass += e;

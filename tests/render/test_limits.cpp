@@ -29,7 +29,7 @@ const RenderResult& mixed_room_by_paths() {
   static const RenderResult result = [] {
     const PreparedScene scene(mixed_room());
     RenderOptions o = options_for(Method::path);
-    o.spp = 2048;
+    o.spp = 1024;
     return render_now(scene, mixed_room_camera(), o);
   }();
   return result;
@@ -174,6 +174,7 @@ TEST_CASE(
     CAPTURE(std::string(method.row().name));
     RenderOptions o = options_for(method);
     o.spp = method == Method::certified ? 4 : 1024;
+    o.error = 0.05;
     const RenderResult first = [&] {
       RenderOptions few = o;
       few.spp = few.max_spp = 4;

@@ -12,23 +12,25 @@
 namespace troffer::test {
 
 // Returns 1 if the open segment passes through the facet, clear of its edges by a relative margin,
-// 0 if it clearly misses it, and -1 if it is too close to decide.
+// 0 if it clearly misses it, and -1 if it is too close to decide. Most tests ask without a margin,
+// where signs suffice: then it takes no square roots.
 inline int meets(const Vec3d& from, const Vec3d& to, const Quad& q, double margin) {
   const int n = is_triangle(q) ? 3 : 4;
   const Vec3d a(q[0]), normal = cross(Vec3d(q[1]) - a, Vec3d(q[2]) - a);
-  const double size = length(normal);
-  if (!(size > 0)) return 0;
-  const double h0 = dot(normal, from - a) / size, h1 = dot(normal, to - a) / size;
-  const double reach = length(to - from) * margin;
+  if (!(dot(normal, normal) > 0)) return 0;
+  const double h0 = dot(normal, from - a), h1 = dot(normal, to - a);
+  // Times the length of `normal`, like h0 and h1.
+  const double reach = margin > 0 ? length(to - from) * margin * length(normal) : 0;
   if ((h0 > reach && h1 > reach) || (h0 < -reach && h1 < -reach)) return 0;
   if (!((h0 > reach && h1 < -reach) || (h0 < -reach && h1 > reach))) return -1;
   const Vec3d p = from + (to - from) * (h0 / (h0 - h1));
   bool is_near = false;
   for (int i = 0; i < n; ++i) {
     const Vec3d v(q[size_t(i)]), w(q[size_t((i + 1) % n)]);
-    const double side = dot(cross(w - v, p - v), normal) / size / length(w - v);
-    if (side < -reach) return 0;
-    is_near = is_near || side < reach;
+    const double side = dot(cross(w - v, p - v), normal);
+    const double near = margin > 0 ? reach * length(w - v) : 0;
+    if (side < -near) return 0;
+    is_near = is_near || side < near;
   }
   return is_near ? -1 : 1;
 }
@@ -74,8 +76,8 @@ class BruteForceScene final : public ShadowScene {
     for (size_t i = 0; i < s.size(); ++i) {
       const Vec3d from(s.from[0][i], s.from[1][i], s.from[2][i]);
       const Vec3d end = from + Vec3d(s.way[0][i], s.way[1][i], s.way[2][i]);
-      is_hidden[i] = 0;
-      for (const Quad& q : facets) is_hidden[i] |= meets(from, end, q, 0) == 1 ? 1 : 0;
+      is_hidden[i] = std::any_of(facets.begin(), facets.end(),
+                                 [&](const Quad& q) { return meets(from, end, q, 0) == 1; });
     }
   }
   Quad facet(uint32_t id) const override { return facets[id]; }
