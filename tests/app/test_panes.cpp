@@ -172,7 +172,8 @@ TEST_CASE(
                                "--fov",    "80",          "--method",
                                method,     "--spp",       method[0] == 'p' ? "1024" : "4",
                                "--sky",    "overcast",    "--threads",
-                               threads,    "--quiet"});
+                               threads,    "--quiet",     "--error",
+                               ".03"});
       CAPTURE(f.err);
       REQUIRE(f.status == 0);
       bytes.push_back(read_file(out));

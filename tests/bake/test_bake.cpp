@@ -119,7 +119,7 @@ TEST_CASE("texels in a room agree with measure") {
   std::vector<MeasuringPoint> measured_points;
   MeasureResult truth;
   for (const Method method : {Method::certified, Method::path}) {
-    BakeOptions o = quick(96, method == Method::path ? 512 : 128);
+    BakeOptions o = quick(72, method == Method::path ? 512 : 128);
     o.light.method = method;
     const BakeResult r = bake(prepared, o, {}, never_stop);
     std::vector<MeasuringPoint> points;
@@ -292,7 +292,7 @@ TEST_CASE("instances share a mesh but not their light") {
   s.instanced_meshes.push_back(dented_ball(0, 12));
   add_instance(s, 0, Affine::translate({0, 0, 0.5}) * Affine::scale({0.3, 0.3, 0.3}), "near");
   add_instance(s, 0, Affine::translate({1.6, 0, 0.4}) * Affine::scale({-0.3, 0.3, 0.3}), "far");
-  const BakeResult r = baked(s, quick(128));
+  const BakeResult r = baked(s, quick(64));
   REQUIRE(r.baked.instances.size() == 2);
   REQUIRE(r.baked.instances[0].is_baked());
   double mean[2] = {0, 0};
@@ -304,7 +304,7 @@ TEST_CASE("instances share a mesh but not their light") {
   Scene copy = lit_floor();
   copy.meshes.push_back(copied_to_world(mesh_at(s, uint32_t(s.meshes.size() + 2))));
   copy.meshes.push_back(copied_to_world(mesh_at(s, uint32_t(s.meshes.size() + 3))));
-  const BakeResult of_copy = baked(copy, quick(128));
+  const BakeResult of_copy = baked(copy, quick(64));
   for (size_t i = 0; i < 2; ++i) {
     double sum = 0;
     for_places(of_copy, MeshInWorld(of_copy.scene.meshes[2 + i]), of_copy.baked.meshes[2 + i],

@@ -250,7 +250,6 @@ TEST_CASE("certified: the standard error of measured values equals their spread 
   o.kj92.radiosity.unshot_fraction = 0.05f;
   o.threads = 2;
   o.spp = 128;
-  o.error = 0.05;
   const auto preparation =
       prepare(scene, o.method, o.kj92, o.indirect, std::nullopt, 2, {}, never_stopped);
   o.preparation = preparation.get();
