@@ -119,7 +119,7 @@ TEST_CASE("texels in a room agree with measure") {
   std::vector<MeasuringPoint> measured_points;
   MeasureResult truth;
   for (const Method method : {Method::certified, Method::path}) {
-    BakeOptions o = quick(72, method == Method::path ? 512 : 128);
+    BakeOptions o = quick(96, method == Method::path ? 512 : 128);
     o.light.method = method;
     const BakeResult r = bake(prepared, o, {}, never_stop);
     std::vector<MeasuringPoint> points;
