@@ -42,11 +42,11 @@ struct Written {
 };
 
 Written written(const Scene& scene, BakedShading shading, const std::string& path,
-                BakeResult* result = nullptr) {
+                BakeResult* result = nullptr, int resolution = 128) {
   BakeOptions o;
   o.shading = shading;
   o.samples = 16;
-  o.atlas.resolution = 128;
+  o.atlas.resolution = resolution;
   const PreparedScene prepared(as_meshes(scene));
   BakeResult r = bake(prepared, o, {}, never_stop);
   REQUIRE(r.is_complete);
@@ -270,7 +270,7 @@ TEST_CASE("hostile meshes are baked or left dark, and nothing worse") {
   for (const BakedShading shading : {BakedShading::lightmap, BakedShading::unlit,
                                      BakedShading::vertex_colors, BakedShading::emissive}) {
     BakeResult r;
-    written(s, shading, folder.path("bad.gltf"), &r);
+    written(s, shading, folder.path("bad.gltf"), &r, 48);
     for (const Image& page : r.irradiance)
       for (const Rgb& p : page.pixels) CHECK(is_finite(p));
     CHECK(std::isfinite(r.figures.mean_lx));

@@ -106,7 +106,7 @@ TEST_CASE("cells: with two rooms on one floor the dark one stays dark") {
   std::vector<MeasuringPoint> points = points_inside({-4, -2, 0}, {0.03, 2, 3}, 6);
   const size_t lit = points.size();
   for (const MeasuringPoint& p : points_inside({0.03, -2, 0}, {4.1, 2, 3}, 6)) points.push_back(p);
-  const MeasureResult r = measure(scene, points, by_cells(1024), {}, never_stopped);
+  const MeasureResult r = measure(scene, points, by_cells(256), {}, never_stopped);
   const double light = mean_irradiance(r, 0, lit), dark = mean_irradiance(r, lit, points.size());
   CHECK(light > 1);
   CHECK(dark <= 1e-4 * light);
