@@ -243,10 +243,8 @@ TEST_CASE("CIE 171, 5.8: interreflections in a closed room") {
   const auto& rule = gauss_legendre<double>(6);
   for (size_t i = 0; i < 6; ++i)
     for (size_t k = 0; k < 6; ++k) {
-      // By symmetry every other point suffices; the table has all.
-      if (table_file() == nullptr && (i + k) % 2 == 1) continue;
       points.push_back({{2 * rule.nodes[i], 2 * rule.nodes[k], 0}, up});
-      weights.push_back(rule.weights[i] * rule.weights[k] * (table_file() == nullptr ? 2 : 1));
+      weights.push_back(rule.weights[i] * rule.weights[k]);
     }
   std::vector<double> means, expected;
   for (const double reflectance : {0.0, 0.3, 0.5, 0.8, 0.9}) {
