@@ -24,6 +24,26 @@ def rules_in_source():
     return sorted(found)
 
 
+def costs():
+    """Costs of counted work by their names in costs.h."""
+    with open(os.path.join(root, "src/transport/costs.h"), encoding="utf-8") as file:
+        found = re.findall(r"(cost_of_\w+) = ([0-9./ ]+)", file.read())
+    return {name: eval(value) for name, value in found}  # pylint: disable=eval-used
+
+
+def counted_cost(stats):
+    """Cost of the counted work of a picture, in rays: the same beside any load, other than time."""
+    c, parts = costs(), [stats["work"] | {"viewing_rays": stats["viewing_rays"]}]
+    parts[0]["pairs"] = stats["lit_certified"] + stats["masked"] + stats["mixed"]
+    parts.append(stats.get("preparation", {}))
+    return c["cost_of_surrogate"] * stats["surrogate_samples"] + sum(
+        p.get("viewing_rays", 0) + p.get("extension_rays", 0)
+        + c["cost_of_shadow_ray"] * p.get("shadow_rays", 0) + c["cost_of_mask"] * p.get("masks", 0)
+        + c["cost_of_mask_facet"] * p.get("mask_facets", 0)
+        + c["cost_of_point"] * p.get("points", 0) + c["cost_of_cluster"] * p.get("clusters", 0)
+        + c["cost_of_pair"] * p.get("pairs", 0) for p in parts)
+
+
 class PublicScene(rooms.Room):
     """A scene by others, from a line of bench/public.txt."""
 
@@ -72,8 +92,8 @@ class Measured:
         return None if None in pictures else sorted(pictures, key=lambda p: p.seconds)[1]
 
     def without(self, rule):
-        """Returns per picture (work, time, error, mean, its standard error) over those with the rule;
-        None for a picture that is the same; a picture over the limit counts as at the limit."""
+        """Returns per picture (work, time, error, mean, its standard error, counted work) over those
+        with the rule; None for a picture that is the same; a picture over the limit counts as at the limit."""
         os.environ["TROFFER_WITHOUT"] = rule
         rows = []
         for case in self.cases():
@@ -83,7 +103,8 @@ class Measured:
             part = self.render(*case)
             e0 = self.reference.error(whole.luminance)
             if part is None:
-                rows.append((self.a.limit / whole.seconds, self.a.limit / whole.seconds, 1, 0, 1))
+                work = self.a.limit / whole.seconds
+                rows.append((work, work, 1, 0, 1, work))
                 continue
             if np.array_equal(part.luminance, whole.luminance):
                 rows.append(None)
@@ -92,7 +113,9 @@ class Measured:
             time = part.seconds / whole.seconds
             x, y = (self.reference.limited(p.luminance) for p in (part, whole))
             noise = np.hypot(part.estimated, whole.estimated) / (x.size / rooms.alike) ** 0.5
-            rows.append((time * (e1 / e0) ** 2, time, e1 / e0, x.mean() / y.mean() - 1, noise))
+            counted = counted_cost(part.stats) / counted_cost(whole.stats)
+            rows.append((time * (e1 / e0) ** 2, time, e1 / e0, x.mean() / y.mean() - 1, noise,
+                         counted * (e1 / e0) ** 2))
         del os.environ["TROFFER_WITHOUT"]
         return rows
 
@@ -100,14 +123,14 @@ class Measured:
 def row_of(rule, rows):
     changed = np.array([r for r in rows if r is not None])
     if not len(changed):
-        return f"| {rule} | | | | | | | | 0 of {len(rows)} |"
-    logs = np.log(changed[:, :3])
+        return f"| {rule} | | | | | | | | | 0 of {len(rows)} |"
+    logs = np.log(changed[:, [0, 1, 2, 5]])
     mean = np.exp(logs.mean(axis=0))
     error = logs[:, 0].std(ddof=1) / len(logs) ** 0.5 if len(logs) > 1 else float("nan")
     weights = 1 / (changed[:, 4] ** 2 + 1e-8)
     off, sigma = (weights * changed[:, 3]).sum() / weights.sum(), weights.sum() ** -0.5
     return (f"| {rule} | {mean[0]:.3f} | {error:.3f} | {np.exp(logs[:, 0].min()):.2f} | "
-            f"{np.exp(logs[:, 0].max()):.2f} | {mean[1]:.3f} | {mean[2]:.3f} | {100 * off:+.2f} % "
+            f"{np.exp(logs[:, 0].max()):.2f} | {mean[1]:.3f} | {mean[2]:.3f} | {mean[3]:.3f} | {100 * off:+.2f} % "
             f"({off / sigma:+.1f}) | {len(changed)} of {len(rows)} |")
 
 
@@ -152,7 +175,7 @@ def main():
                 print(f"{scene.seed} failed: {error}", file=sys.stderr)
     except KeyboardInterrupt:
         print("stopped: the table holds what was finished", file=sys.stderr)
-    print("| without | work | ± | least | most | time | error | mean | n |\n" + "|---" * 9 + "|")
+    print("| without | work | ± | least | most | time | error | counted | mean | n |\n" + "|---" * 10 + "|")
     for rule in rules:
         print(row_of(rule, rows[rule]))
 

@@ -42,6 +42,7 @@ class Picture:
         self.luminance, self.least = luminance, least
         self.seconds = stats["seconds"]["total_cpu"]
         self.estimated = stats.get("estimated_error") or 0.0
+        self.stats = stats
 
 
 class Stopped(Exception):

@@ -107,6 +107,11 @@ std::unique_ptr<Integrator> make_quick(const MethodInput& in, const Occlusion& b
                                           std::make_unique<CellsIndirect>(cells, records));
 }
 
+// Openings that the plan has found; null: none.
+std::shared_ptr<const Openings> openings_of(const MethodPlan& plan) {
+  return plan.forecast ? plan.forecast->openings : nullptr;
+}
+
 // Makes a path tracer that samples as the forecast says, or to the usual number of samples.
 std::unique_ptr<Integrator> make_paths(const MethodPlan& plan, const MethodInput& in) {
   if (!plan.forecast)
@@ -115,15 +120,17 @@ std::unique_ptr<Integrator> make_paths(const MethodPlan& plan, const MethodInput
   return std::make_unique<PathIntegrator>(
       in.scene, PathOptions{in.settings.depth, false,
                             sampling_by_paths(*plan.forecast, error_by_paths(in.settings.error),
-                                              most_by_paths(in.settings.most_viewing_rays))});
+                                              most_by_paths(in.settings.most_viewing_rays)),
+                            false, nullptr, nullptr, openings_of(plan)});
 }
 
 // Makes a path tracer that ends at these cells.
 std::unique_ptr<Integrator> cached_paths(const MethodInput& in,
                                          const std::shared_ptr<const Cells>& cells,
-                                         const PixelSampling& sampling) {
+                                         const PixelSampling& sampling,
+                                         const std::shared_ptr<const Openings>& openings) {
   return std::make_unique<PathIntegrator>(
-      in.scene, PathOptions{in.settings.depth, false, sampling, false, nullptr, cells});
+      in.scene, PathOptions{in.settings.depth, false, sampling, false, nullptr, cells, openings});
 }
 
 // Ways to compute a picture whose cells are made.
@@ -170,8 +177,9 @@ std::unique_ptr<Integrator> paths_if_cheaper(const MethodPlan& plan, const Metho
                                              const Integrator& gathers, CellsIndirect& reflected) {
   const double error = error_by_paths(in.settings.error);
   const int most = most_by_paths(in.settings.most_viewing_rays);
-  const PathForecast cached = forecast_paths(*cached_paths(in, cells, {}), *in.cells->view, error,
-                                             most, in.cells->seed, in.cells->counters);
+  const PathForecast cached =
+      forecast_paths(*cached_paths(in, cells, {}, openings_of(plan)), *in.cells->view, error, most,
+                     in.cells->seed, in.cells->counters);
   const bool is_cached_possible = cached.is_within(most);
   if (!is_cached_possible && !plan.forecast) {
     tell_choice(in, CellWay::gathers, cached, false, {});
@@ -186,7 +194,7 @@ std::unique_ptr<Integrator> paths_if_cheaper(const MethodPlan& plan, const Metho
   tell_choice(in, way, cached, is_cached_possible, trial);
   switch (way) {
     case CellWay::cached_paths:
-      return cached_paths(in, cells, sampling_by_paths(cached, error, most));
+      return cached_paths(in, cells, sampling_by_paths(cached, error, most), openings_of(plan));
     case CellWay::paths:
       return make_paths(plan, in);
     case CellWay::gathers:
@@ -216,7 +224,8 @@ std::unique_ptr<Integrator> make_by_cells(const MethodPlan& plan, const MethodIn
   auto gathers = std::make_unique<WaveIntegrator>(
       in.scene,
       std::make_unique<StagedDirect>(make_direct(in, by, plan.first), std::move(further), samples),
-      std::move(indirect), false, is_picture ? cached_paths(in, cells, {}) : nullptr);
+      std::move(indirect), false,
+      is_picture ? cached_paths(in, cells, {}, openings_of(plan)) : nullptr);
   if (plan.may_end_paths_at_cells)
     if (std::unique_ptr<Integrator> paths = paths_if_cheaper(plan, in, cells, *gathers, reflected))
       return paths;
@@ -241,7 +250,7 @@ MethodPlan plan_cached_path(const MethodInput& in) {
 std::unique_ptr<Integrator> make_cached_path(const MethodPlan& plan, const MethodInput& in) {
   const CertifiedDirect at_cells(in.scene, occluders_for(in), plan.at_cells);
   const std::shared_ptr<const Cells> cells = cells_of(plan, in, at_cells, 1);
-  return cells ? cached_paths(in, cells, {}) : nullptr;
+  return cells ? cached_paths(in, cells, {}, nullptr) : nullptr;
 }
 
 std::unique_ptr<Integrator> make_certified(const MethodPlan& plan, const MethodInput& in) {

@@ -6,6 +6,7 @@
 
 #include "base/ablation.h"
 #include "methods/methods.h"
+#include "methods/openings_training.h"
 #include "methods/path.h"
 
 namespace troffer {
@@ -61,14 +62,34 @@ bool may_be_by_paths(const MethodInput& in) {
          in.cells->store == nullptr;
 }
 
-// Returns the forecast for path tracing, or nothing if it cannot reach the asked error.
+PathForecast forecast_with(const MethodInput& in, std::shared_ptr<const Openings> openings) {
+  PathOptions options;
+  options.openings = openings;
+  PathForecast f = forecast_paths(
+      PathIntegrator(in.scene, options), *in.cells->view, error_by_paths(in.settings.error),
+      most_by_paths(in.settings.most_viewing_rays), in.cells->seed, in.cells->counters);
+  f.openings = std::move(openings);
+  return f;
+}
+
+// Returns the forecast for path tracing, by openings of the sky if these make it cheaper; nothing
+// if it cannot reach the asked error.
 std::optional<PathForecast> forecast(const MethodInput& in) {
-  const CellInput& cells = *in.cells;
-  const int most = most_by_paths(in.settings.most_viewing_rays);
-  const PathForecast f =
-      forecast_paths(PathIntegrator(in.scene, {}), *cells.view, error_by_paths(in.settings.error),
-                     most, cells.seed, in.cells->counters);
-  return f.is_within(most) ? std::optional(f) : std::nullopt;
+  // Share of a picture's rays that may go into finding openings, and how much more than pictures by
+  // cells paths may cost without openings if these are to be found.
+  constexpr double share_of_training = 0.05, most_times_cells = 8;
+  PathForecast f = forecast_with(in, nullptr);
+  if (f.rays < most_times_cells * (f.rays - f.rays_for_cells)) {
+    const std::shared_ptr<const Openings> openings =
+        find_openings(in.scene, *in.cells->view, f, share_of_training * f.rays, in.cells->seed,
+                      in.settings.threads, in.cells->counters);
+    if (openings) {
+      PathForecast by_openings = forecast_with(in, openings);
+      if (by_openings.rays < f.rays) f = std::move(by_openings);
+    }
+  }
+  return f.is_within(most_by_paths(in.settings.most_viewing_rays)) ? std::optional(f)
+                                                                   : std::nullopt;
 }
 
 std::string sampling_in_words(const CertifiedSettings& s) {
