@@ -297,6 +297,25 @@ void bind_grid(py::module_& m) {
            [](const GridOfYear& g) { return "<troffer.AnnualGrid '" + g.grid().name + "'>"; });
 }
 
+constexpr const char* annual_text =
+    "Computes a year of daylight, as `troffer annual` does. All light sources are off, except "
+    "for "
+    "`electric`.\n\n"
+    "weather: an .epw file, or Radiance's .wea. grids: dict from names to points, float64 (n, "
+    "6), x, y, z in metres and the normal, or (n, 3), which face up; or one such array; None "
+    "takes the grids of a Honeybee model.\n\nKeywords: north=0: degrees clockwise. ground=0.2: "
+    "its reflectance. occupancy='8-18', or a file. groups: file of window groups. "
+    "blinds='lm-83', 'open', or a file. threshold=300: lx of daylight autonomy. subdivision=4: "
+    "of the sky. gather_rays=0: per sensor. threads=0. seed=0. progress: as in render().\n\n"
+    "eyes: float64 (n, 6), eyes and their lines of sight, rated for glare in every hour. "
+    "sunlight: float64 (n, 6), points and normals whose hours of sunlight on sunlight_day="
+    "'03-21' are found; '03-21,11' counts the sun from 11 degrees of altitude on. electric: list "
+    "of groups of lights that daylight dims, each 'NAME[,NAME...]', where '*' stands for any "
+    "letters. electric_target=500: lx that daylight and electric light reach together.\n\n"
+    "Raises ValueError for files and arguments that cannot be used, and for names that no light "
+    "has; TypeError for arguments of a wrong type or name.\n\n"
+    "Memory: 12 bytes per sensor and hour. Ctrl-C raises KeyboardInterrupt.";
+
 }  // namespace
 
 void bind_annual(py::module_& m, SceneClass& scene) {
@@ -341,25 +360,8 @@ void bind_annual(py::module_& m, SceneClass& scene) {
                     "illuminance.")
       .def_readonly("is_complete", &AnnualDaylight::is_complete,
                     "False after a stop; there are then no grids.");
-  scene.def(
-      "annual", &annual_of_scene, py::arg("weather"), py::arg("grids") = py::none(),
-      "Computes a year of daylight, as `troffer annual` does. All light sources are off, except "
-      "for "
-      "`electric`.\n\n"
-      "weather: an .epw file, or Radiance's .wea. grids: dict from names to points, float64 (n, "
-      "6), x, y, z in metres and the normal, or (n, 3), which face up; or one such array; None "
-      "takes the grids of a Honeybee model.\n\nKeywords: north=0: degrees clockwise. ground=0.2: "
-      "its reflectance. occupancy='8-18', or a file. groups: file of window groups. "
-      "blinds='lm-83', 'open', or a file. threshold=300: lx of daylight autonomy. subdivision=4: "
-      "of the sky. gather_rays=0: per sensor. threads=0. seed=0. progress: as in render().\n\n"
-      "eyes: float64 (n, 6), eyes and their lines of sight, rated for glare in every hour. "
-      "sunlight: float64 (n, 6), points and normals whose hours of sunlight on sunlight_day="
-      "'03-21' are found; '03-21,11' counts the sun from 11 degrees of altitude on. electric: list "
-      "of groups of lights that daylight dims, each 'NAME[,NAME...]', where '*' stands for any "
-      "letters. electric_target=500: lx that daylight and electric light reach together.\n\n"
-      "Raises ValueError for files and arguments that cannot be used, and for names that no light "
-      "has; TypeError for arguments of a wrong type or name.\n\n"
-      "Memory: 12 bytes per sensor and hour. Ctrl-C raises KeyboardInterrupt.");
+  scene.def("annual", &annual_of_scene, py::arg("weather"), py::arg("grids") = py::none(),
+            annual_text);
 }
 
 }  // namespace troffer::bindings

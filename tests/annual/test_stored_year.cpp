@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <random>
 #include <sstream>
 
 #include "annual/stored_hours.h"
@@ -172,4 +173,41 @@ TEST_CASE("an array that shrinks while it is in use makes an error") {
   CHECK_THROWS_AS(hours.all_sensors(0, StoredPart::total, {1}), InputError);
   CHECK_THROWS_AS(hours.all_hours(2, StoredPart::total, {1}), InputError);
   CHECK_NOTHROW(hours.all_sensors(0, StoredPart::total, {0}));
+}
+
+TEST_CASE("a folder with damaged files is read or refused") {
+  const std::vector<std::string> names{"annual.json",
+                                       "metrics.csv",
+                                       "honeybee/sun-up-hours.txt",
+                                       "honeybee/study_info.json",
+                                       "honeybee/dynamic_schedule.json",
+                                       "honeybee/grids_info.json",
+                                       south_total,
+                                       "honeybee/standard_error/hall.npy"};
+  const StoredFolder folder;
+  std::mt19937 random(1);
+  const auto below = [&](size_t n) { return random() % n; };
+  int refused = 0;
+  for (int i = 0; i < 400; ++i) {
+    const std::string& name = names[size_t(i) % names.size()];
+    const std::string whole = text_of_file(folder.file(name));
+    std::string damaged = whole;
+    if (below(4) == 0) damaged.resize(below(damaged.size()));
+    for (size_t k = below(4); !damaged.empty() && k-- > 0;)
+      damaged[below(damaged.size())] = "0123456789,.[]{}:\"'<()\n\xff -e"[below(31)];
+    folder.write(name, damaged);
+    try {
+      StoredHours hours(read_stored_year(folder.path()));
+      const StoredStates states(hours.year().groups.size(), by_schedule);
+      (void)hours.all_sensors(0, StoredPart::total, states);
+      (void)hours.all_hours(0, StoredPart::total, states);
+      (void)hours.errors(hours.year().points.size() - 1);
+    } catch (const InputError& e) {
+      CHECK(!std::string(e.what()).empty());
+      ++refused;
+    }
+    folder.write(name, whole);
+  }
+  CHECK(refused > 100);
+  CHECK(refused < 400);
 }
