@@ -86,7 +86,7 @@ class YearOfDaylight {
     return this.yearStep;
   }
 
-  // What is asked beside the hour.
+  // Part of a request that selects light and states.
   get asked() { return `part=${this.part}&states=${this.states.join(',')}`; }
   get part() { return $('year-part').value; }
   stateOf(group, hour) { return this.states[group] >= 0 ? this.states[group] : this.about.groups[group].schedule[hour]; }
