@@ -348,7 +348,7 @@ def check_year(program, browser, folder):
                     "--border", "0.5", "--groups", "groups.json", "--subdivision", "1", "--gather-rays", "64",
                     "--quiet"], cwd=scene, check=True)
     page = Page(program, [os.path.join(scene, "office.glb"), "--annual", year, "--size", "160x120", "--error",
-                          "0.5", "--quiet"], browser)
+                          "0.5", "--at", "48,0,2026-06-21T08:00+00:00", "--quiet"], browser)
     page.wait("window.year && year.values && year.seen")
     assert page.js("document.getElementById('year-note').hidden")
     count, when = page.js("year.sensors.length"), page.js("document.getElementById('year-when').textContent")
@@ -380,9 +380,13 @@ def check_year(program, browser, folder):
     page.set("year-through", True)
     assert page.js("year.marks.length") == count
     page.screenshot("year")
-    # Sliders, keys, groups, and direct light.
+    # Sliders, keys, groups, and direct light. The picture follows if asked to.
+    page.set("year-follow", True)
     page.set("year-step", "9")
     check(None, "total")
+    page.wait("app.state.time === '2015-03-21T09:30+00:00'")
+    page.wait("document.getElementById('clock').textContent === '09:30 +00:00'")
+    page.set("year-follow", False)
     page.browser.find_element(By.ID, "year-step").send_keys(Keys.ARROW_RIGHT)
     assert page.js("year.step") == 10
     page.browser.find_element(By.ID, "year-day").send_keys(Keys.ARROW_UP)

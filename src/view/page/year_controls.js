@@ -91,7 +91,9 @@ function followYear() {
     const offset = `${zone < 0 ? '-' : '+'}${twoDigits(Math.floor(minutes / 60))}:${twoDigits(minutes % 60)}`;
     try {
       await post('time', {time: `${year.dateOf(year.day).toISOString().slice(0, 10)}T${year.clockOf(year.step)}${offset}`});
-      makeDimmers(await getJson('state'));
+      const state = await getJson('state');
+      makeDimmers(state);
+      makeTime(state);
       app.movedAt = performance.now();
     } catch (error) { say(error.message); }
   }, 200);
