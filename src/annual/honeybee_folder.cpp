@@ -83,6 +83,17 @@ struct HoneybeeFolder::GridFiles {
   std::unique_ptr<ArrayFiles> error;
 };
 
+std::vector<std::string> file_identifiers(const std::vector<std::string>& names) {
+  std::set<std::string> used;
+  std::vector<std::string> ids;
+  for (const std::string& name : names) {
+    std::string id = identifier(name);
+    for (int n = 2; !used.insert(id).second; ++n) id = fmt::format("{}_{}", identifier(name), n);
+    ids.push_back(id);
+  }
+  return ids;
+}
+
 std::string npy_header(size_t rows, size_t columns) {
   std::string text =
       fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}), }}", rows, columns);
@@ -107,16 +118,17 @@ HoneybeeFolder::HoneybeeFolder(std::string path, const std::vector<HoneybeeGrid>
                                const std::vector<HoneybeePath>& paths, size_t hours,
                                ArrayFormat format)
     : path_(std::move(path)), hours_(hours), format_(format) {
-  const auto unique_id = [](const std::string& name, std::set<std::string>& used) {
-    std::string id = identifier(name);
-    for (int n = 2; !used.insert(id).second; ++n) id = fmt::format("{}_{}", identifier(name), n);
-    return id;
+  const auto names_of = [](const auto& list) {
+    std::vector<std::string> names;
+    for (const auto& item : list) names.push_back(item.name);
+    return names;
   };
-  std::set<std::string> used_paths, used_grids;
+  const std::vector<std::string> path_ids = file_identifiers(names_of(paths));
+  const std::vector<std::string> grid_ids = file_identifiers(names_of(grids));
   for (const HoneybeePath& p : paths) {
     PathNames& names = paths_.emplace_back();
     names.name = p.name;
-    names.id = unique_id(p.name, used_paths);
+    names.id = path_ids[paths_.size() - 1];
     for (size_t s = 0; s < p.states; ++s) {
       names.states.push_back(p.name == static_path ? "default" : fmt::format("{}_{}", s, names.id));
       for (const char* part : part_names) make_folder(folder_of(names, s) + part);
@@ -126,7 +138,7 @@ HoneybeeFolder::HoneybeeFolder(std::string path, const std::vector<HoneybeeGrid>
   for (const HoneybeeGrid& g : grids) {
     GridFiles& files = grids_.emplace_back();
     files.name = g.name;
-    files.id = unique_id(g.name, used_grids);
+    files.id = grid_ids[grids_.size() - 1];
     files.sensors = g.sensors;
   }
 }

@@ -63,6 +63,9 @@ class HoneybeeFolder {
   size_t grid_ = 0, sensor_ = 0;  // next one
 };
 
+// Returns names of files for the names of grids, or of light paths: letters, digits, '_', '-' and
+// '.' stay, equal names get numbers. Their order matters.
+std::vector<std::string> file_identifiers(const std::vector<std::string>& names);
 // Returns the header of an array of little-endian floats, row by row [2].
 std::string npy_header(size_t rows, size_t columns);
 // Returns one row of a text array: numbers in exponential notation between tabs [3].

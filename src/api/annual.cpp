@@ -51,14 +51,17 @@ std::vector<SensorGrid> grids_or_own(const std::vector<SensorGrid>& given,
 
 // Everything that a calculation reads.
 struct YearInputs {
-  std::vector<MeasuringPoint> points;
+  std::vector<MeasuringPoint> points;  // sensors, then eyes
   std::vector<SensorSpan> spans;
+  size_t sensors = 0;
+  std::vector<MeasuringPoint> sunlit;
+  SunlightDay day;
   WeatherYear year;
   Compass compass;
 };
 
 YearInputs inputs_of(const std::vector<SensorGrid>& grids, ScriptScene& script,
-                     const std::string& weather, double north) {
+                     const std::string& weather, const AnnualOptions& o) {
   YearInputs in;
   for (const SensorGrid& g : grids) {
     if (g.points.empty()) throw UsageError("grid '" + g.name + "' has no points");
@@ -66,8 +69,14 @@ YearInputs inputs_of(const std::vector<SensorGrid>& grids, ScriptScene& script,
     in.spans.push_back({in.points.size(), its.size()});
     in.points.insert(in.points.end(), its.begin(), its.end());
   }
+  in.sensors = in.points.size();
+  const std::vector<MeasuringPoint> eyes = measuring_points(o.eyes, "eyes, ");
+  in.points.insert(in.points.end(), eyes.begin(), eyes.end());
+  in.sunlit = measuring_points(o.sunlight, "sunlight, ");
+  in.day = with_script_words([&] { return parse_sunlight_day(o.sunlight_day); });
   in.year = read_weather_year(weather);
-  in.compass = make_compass(script.up(), north, is_mirrored(script.scene()));
+  in.compass =
+      make_compass(script.up(), in_range(o.north, -360, 360, "north"), is_mirrored(script.scene()));
   return in;
 }
 
@@ -117,13 +126,35 @@ void add_groups(const std::vector<LightPath>& paths, const StateSchedule& schedu
   }
 }
 
+void add_glare(const YearTimes& times, AnnualDaylight& out) {
+  for (EyeGlare& e : out.eyes) {
+    e.shares = shares_of_glare(e.dgp, times);
+    e.level = glare_level({{}, {}, {}, e.shares});
+  }
+}
+
+void add_sunlit(const YearInputs& in, const std::vector<LightPath>& paths, int threads,
+                AnnualDaylight& out) {
+  for (const double hours : sunlight_hours(paths, in.sunlit, in.year, in.compass, in.day, threads))
+    out.sunlight.push_back({hours, sunlight_level(hours)});
+}
+
+void add_electric(const std::vector<ElectricLight>& lights, const std::vector<DimmedUse>& uses,
+                  AnnualDaylight& out) {
+  for (size_t g = 0; g < uses.size(); ++g) {
+    const DimmedUse& u = uses[g];
+    out.electric.push_back({u.name, lights[g].lx, lights[g].error, u.sensors, u.mean_lx,
+                            u.occupied_hours, u.full_load_hours});
+  }
+}
+
 // Completes `out`, which holds the hours already.
 void finish(const AnnualResult& result, const YearInputs& in, const std::vector<LightPath>& paths,
             const std::vector<SensorGrid>& grids, AnnualDaylight& out) {
   for (const uint32_t step : result.skies.steps)
     out.hours.push_back(in.year.steps[step].hour_of_year);
   out.occupied = result.times.is_occupied;
-  out.sensors = in.points.size();
+  out.sensors = in.sensors;
   out.place = in.year.place;
   out.relative_error = result.relative_error;
   add_metrics(result.figures, out);
@@ -135,6 +166,53 @@ void finish(const AnnualResult& result, const YearInputs& in, const std::vector<
   add_groups(paths, result.schedule, out);
 }
 
+// Everything that work on another thread needs.
+struct YearTask {
+  const ScriptScene& script;
+  const std::vector<SensorGrid>& grids;
+  const YearInputs& in;
+  const std::vector<ElectricGroup>& electric;
+  double target_lx = 0;
+  const std::string& groups;
+  const troffer::AnnualOptions& options;
+};
+
+AnnualDaylight year_of(const YearTask& task, std::atomic<double>& fraction, StopFlag& stop) {
+  const YearInputs& in = task.in;
+  const troffer::AnnualOptions& o = task.options;
+  AnnualDaylight out;
+  const std::vector<LightPath> paths =
+      with_script_words([&] { return paths_of(task.script, task.groups); });
+  const std::span sensors = std::span(in.points).first(in.sensors);
+  const std::vector<ElectricLight> lights =
+      measure_electric(task.script.scene(), task.electric, {sensors.begin(), sensors.end()}, o.seed,
+                       o.threads, stop);
+  DimmingYear dimming(lights, task.target_lx);
+  const auto take = [&](size_t point, const HoursOfSensor& h) {
+    if (point >= in.sensors) {
+      out.eyes.push_back({h.total, h.dgp, {}, {}});
+      return;
+    }
+    append(out.total, h.total);
+    append(out.standard_error, h.error);
+    append(out.direct, h.sun);
+    dimming.add(point, h.total);
+  };
+  const AnnualResult result = with_script_words([&] {
+    return compute_annual(
+        {paths, in.points, in.spans, in.year, in.compass, in.points.size() - in.sensors}, o, take,
+        [&](double f) { fraction = f; }, stop);
+  });
+  if (!result.is_complete) out = AnnualDaylight{};
+  out.is_complete = result.is_complete;
+  if (!result.is_complete) return out;
+  finish(result, in, paths, task.grids, out);
+  add_glare(result.times, out);
+  add_sunlit(in, paths, o.threads, out);
+  add_electric(lights, dimming.use(result.times, in.year.steps_per_hour), out);
+  return out;
+}
+
 }  // namespace
 
 AnnualDaylight annual(Scene& scene, const std::string& weather,
@@ -143,29 +221,15 @@ AnnualDaylight annual(Scene& scene, const std::string& weather,
   ScriptScene& script = scene.impl().script;
   const troffer::AnnualOptions o = options_of(options);
   const std::vector<SensorGrid> used = grids_or_own(grids, script.scene());
-  const YearInputs in =
-      inputs_of(used, script, weather, in_range(options.north, -360, 360, "north"));
+  const YearInputs in = inputs_of(used, script, weather, options);
+  const double target = in_range(options.electric_target, 1, 100000, "electric_target");
+  const std::vector<ElectricGroup> electric =
+      with_script_words([&] { return electric_groups(script.scene(), options.electric); });
   AnnualDaylight out;
   std::atomic<double> fraction{0};
   double shown = 0;
   const auto work = [&](StopFlag& stop) {
-    const std::vector<LightPath> paths =
-        with_script_words([&] { return paths_of(script, options.groups); });
-    const auto take = [&](size_t, const HoursOfSensor& h) {
-      append(out.total, h.total);
-      append(out.standard_error, h.error);
-      append(out.direct, h.sun);
-    };
-    const AnnualResult result = with_script_words([&] {
-      return compute_annual(
-          {paths, in.points, in.spans, in.year, in.compass}, o, take,
-          [&](double f) { fraction = f; }, stop);
-    });
-    if (result.is_complete)
-      finish(result, in, paths, used, out);
-    else
-      out = AnnualDaylight{};
-    out.is_complete = result.is_complete;
+    out = year_of({script, used, in, electric, target, options.groups, o}, fraction, stop);
   };
   run_watched(work, [&](StopFlag& stop) {
     shown = std::max(shown, fraction.load());

@@ -12,6 +12,7 @@
 #include "app/common_options.h"
 #include "app/daylight_flags.h"
 #include "app/option_values.h"
+#include "app/printable.h"
 #include "app/signals.h"
 #include "base/error.h"
 #include "base/parallel.h"
@@ -65,6 +66,8 @@ void add_view(CLI::App& app, ViewCommand& c) {
   s->add_option("--size", c.size, "Picture size in pixels [about 640x480]");
   s->add_option("--camera", c.camera,
                 "Camera to start with; troffer info lists the names [the first]");
+  s->add_option("--annual", c.annual,
+                "Folder that troffer annual wrote: the page shows its sensors in every hour");
   add_method(*s, c.method);
   s->add_option("--error", c.error, "Standard error at which a picture is finished")
       ->check(number_between(1e-3, 1))
@@ -85,6 +88,7 @@ int run_view(const ViewCommand& c) {
   settings.options.seed = c.seed;
   settings.file = c.scene.file;
   read_size(c.size, settings);
+  if (!c.annual.empty()) settings.year = std::make_shared<StoredHours>(read_stored_year(c.annual));
   const ThreadLimit limit(c.threads);
   const PlaceOfTime at = place_of_time(c.daylight.at);
   // Another time of day relights the scene as it was read, even if its files change.
@@ -122,6 +126,8 @@ int run_view(const ViewCommand& c) {
     fmt::print("{}\n", address);
     std::fflush(stdout);
   };
+  if (!c.is_quiet)
+    start.note = [](const std::string& note) { fmt::print(stderr, "note: {}\n", printable(note)); };
   const StopFlag& stop = install_stop_handlers();
   return view(std::move(scene), settings, start, stop) ? exit_done : exit_interrupted;
 }

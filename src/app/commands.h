@@ -138,6 +138,7 @@ struct ViewCommand {
   int port = 0;      // 0: any free port
   std::string size;  // WxH, or empty
   std::string camera;
+  std::string annual;  // folder of `troffer annual`, or empty
   std::string method = "certified";
   double error = 0.02;
   std::vector<std::string> lights;

@@ -89,6 +89,7 @@ constexpr std::array rows{
     OptionRow{"--fov", view, "DEGREES", ""},
     OptionRow{"--crop", view, "X0,Y0,X1,Y1", ""},
     OptionRow{"--port", view, "PORT", ""},
+    OptionRow{"--annual", view, "FOLDER", "/"},
     // Light
     OptionRow{"--light", light, "NAME,…", ""},
     OptionRow{"--luminaire", light, "NODE=FILE[,LUMENS[,KELVIN]]", photometry},

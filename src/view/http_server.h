@@ -20,6 +20,12 @@ struct HttpRequest {
   std::string path;                          // path after the token: "" or "state", …
   std::map<std::string, std::string> query;  // decoded; the last one of equal names
   std::string body;
+
+  // Returns a value of the query; "" if it is missing.
+  std::string value(const std::string& key) const {
+    const auto at = query.find(key);
+    return at == query.end() ? "" : at->second;
+  }
 };
 
 // An answer.

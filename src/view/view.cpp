@@ -24,6 +24,8 @@ bool view(Scene scene, ViewSettings settings, const ViewStart& start, const Stop
   ViewService service(lighting, settings, board, painter, queue);
   HttpServer server(start.port, random_token(),
                     [&](const HttpRequest& request) { return service.answer(request); });
+  if (start.note)
+    for (const std::string& n : service.notes()) start.note(n);
   start.tell(server.address());
   constexpr std::chrono::milliseconds pause{20};
   while (!stop.load() && !service.is_closed()) {

@@ -14,6 +14,8 @@ struct ViewStart {
   bool has_camera = false;  // ViewSettings::camera is set; otherwise one is placed
   // Called with the page's address once it is served.
   std::function<void(const std::string& address)> tell;
+  // Called before that, with each note for the user; may be null.
+  std::function<void(const std::string& note)> note;
 };
 
 // Serves the page until the page asks to close (returns true) or `stop` is set (returns false).

@@ -24,13 +24,8 @@ HttpResponse json_response(const json& j) {
   return {200, "application/json", text_of_json(j), ""};
 }
 
-std::string value_of(const HttpRequest& r, const std::string& key) {
-  const auto at = r.query.find(key);
-  return at == r.query.end() ? "" : at->second;
-}
-
 uint64_t number_of(const HttpRequest& r, const std::string& key) {
-  return std::strtoull(value_of(r, key).c_str(), nullptr, 10);
+  return std::strtoull(r.value(key).c_str(), nullptr, 10);
 }
 
 HttpResponse page_file(const std::string& name) {
@@ -78,8 +73,14 @@ ViewService::ViewService(std::shared_ptr<Lighting> lighting, ViewSettings settin
       painter_(painter),
       desk_(desk) {
   const ImageSize own = moderate_size(settings_.camera);
+  if (settings_.year)
+    year_ = std::make_unique<YearAnswers>(settings_.year, lighting_->bounds(), settings_.file);
   const bool is_asked = settings_.width > 0 && settings_.height > 0;
   show(settings_.camera, is_asked ? ImageSize{settings_.width, settings_.height} : own);
+}
+
+std::vector<std::string> ViewService::notes() const {
+  return year_ ? year_->notes() : std::vector<std::string>{};
 }
 
 void ViewService::show(const Camera& camera, const ImageSize& size) {
@@ -96,6 +97,8 @@ HttpResponse ViewService::get(const HttpRequest& r) {
   if (r.path == "picture") return picture(r);
   if (r.path == "measured") return measured(r, false);
   if (r.path == "measured.csv") return measured(r, true);
+  if (year_ && r.path == "year/seen") return sensors_in_sight();
+  if (year_ && (r.path == "year" || r.path.starts_with("year/"))) return year_->answer(r);
   return page_file(r.path);
 }
 
@@ -136,6 +139,7 @@ HttpResponse ViewService::state() const {
             {"is_photometric", lighting_->is_photometric()},
             {"time", settings_.time},
             {"has_time", settings_.relit != nullptr},
+            {"has_year", year_ != nullptr},
             {"size", {request.size.width, request.size.height}},
             {"up", troffer::json_of(Vec3d(settings_.up))},
             {"camera", json_of_camera(request.camera, lighting_->origin())}};
@@ -153,10 +157,17 @@ HttpResponse ViewService::state() const {
   return json_response(j);
 }
 
+// One byte per sensor of the year: 1 if the current view shows it.
+HttpResponse ViewService::sensors_in_sight() const {
+  return {200, "application/octet-stream",
+          as_text(points_in_sight(*lighting_->whole(), painter_.request().camera, year_->points())),
+          ""};
+}
+
 // The body is four 32-bit words (width, height, channels, version), then floats, row by row from
 // the top.
 HttpResponse ViewService::layer(const HttpRequest& r) const {
-  const std::string name = value_of(r, "name");
+  const std::string name = r.value("name");
   const auto l = board_.get(name);
   if (!l) return {404, "text/plain; charset=utf-8", "no such layer\n", ""};
   const uint32_t channels = name == "error" ? 1 : 3;
@@ -175,13 +186,13 @@ HttpResponse ViewService::layer(const HttpRequest& r) const {
 }
 
 HttpResponse ViewService::picture(const HttpRequest& r) const {
-  const DimmerSettings dimmers = parse_dimmers(value_of(r, "dimmers"), lighting_->dimmers().size());
+  const DimmerSettings dimmers = parse_dimmers(r.value("dimmers"), lighting_->dimmers().size());
   std::vector<Layer> layers{{"", {"R", "G", "B"}, dimmed_picture(board_, dimmers)}};
-  const std::string format = value_of(r, "format");
+  const std::string format = r.value("format");
   if (format == "png") {
-    const double stops = std::strtod(value_of(r, "stops").c_str(), nullptr);
+    const double stops = std::strtod(r.value("stops").c_str(), nullptr);
     const Display display{std::isfinite(stops) ? std::clamp(stops, -60.0, 60.0) : 0,
-                          value_of(r, "tone_map") == "none" ? ToneMap::none : ToneMap::filmic};
+                          r.value("tone_map") == "none" ? ToneMap::none : ToneMap::filmic};
     return {200, "image/png", as_text(encode_png(layers[0].image, display, 1)), "view.png"};
   }
   if (format == "hdr")
@@ -208,7 +219,7 @@ HttpResponse ViewService::measured(const HttpRequest& r, bool is_csv) const {
   if (!a) throw UsageError("there is no measurement with that number");
   if (is_csv) {
     const DimmerSettings dimmers =
-        parse_dimmers(value_of(r, "dimmers"), a->task.lighting->dimmers().size());
+        parse_dimmers(r.value("dimmers"), a->task.lighting->dimmers().size());
     return {200, "text/csv; charset=utf-8",
             measurements_csv(a->task.points, dimmed_measurements(*a, dimmers)), "measured.csv"};
   }

@@ -13,6 +13,7 @@
 #include "view/layer_board.h"
 #include "view/measuring_queue.h"
 #include "view/painter.h"
+#include "view/year_answers.h"
 
 namespace troffer {
 
@@ -28,6 +29,7 @@ struct ViewSettings {
   std::string time;
   // Returns the scene at another time; may be null. May throw UsageError and InputError.
   std::function<Scene(const std::string& time)> relit;
+  std::shared_ptr<StoredHours> year;  // a year of daylight of this scene; may be null
 };
 
 // Connects the page with painter, board and measuring queue.
@@ -39,6 +41,8 @@ class ViewService {
 
   // Answers a request. Throws UsageError for invalid ones. Call from one thread at a time.
   HttpResponse answer(const HttpRequest& request);
+  // Returns notes on a year that may be of another scene.
+  std::vector<std::string> notes() const;
   // True if the page has asked to close.
   bool is_closed() const { return is_closed_; }
 
@@ -46,6 +50,7 @@ class ViewService {
   HttpResponse get(const HttpRequest& request);
   HttpResponse post(const HttpRequest& request);
   HttpResponse state() const;
+  HttpResponse sensors_in_sight() const;
   HttpResponse layer(const HttpRequest& request) const;
   HttpResponse picture(const HttpRequest& request) const;
   HttpResponse measured(const HttpRequest& request, bool is_csv) const;
@@ -64,6 +69,7 @@ class ViewService {
   LayerBoard& board_;
   Painter& painter_;
   MeasuringQueue& desk_;
+  std::unique_ptr<YearAnswers> year_;  // null: no year
   std::atomic<bool> is_closed_ = false;
 };
 

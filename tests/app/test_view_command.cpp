@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "../annual/stored_folder.h"
 #include "../view/client.h"
 #include "program.h"
 
@@ -81,6 +82,21 @@ TEST_CASE("another time of day relights the loaded scene even if its files are g
   CHECK(program.wait().status == 130);
 }
 
+TEST_CASE("view notes a year of another scene, and shows it") {
+  const Folder folder;
+  const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
+  const troffer::test::StoredFolder year;
+  Running program(folder, {"view", scene, "--annual", year.path(), "--threads", "1"});
+  const std::string address = address_of(program);
+  CAPTURE(program.output());
+  REQUIRE(!address.empty());
+  program.send(SIGTERM);
+  const Finished f = program.wait();
+  CHECK(f.status == 130);
+  CHECK(f.err.find("two.gltf, not room.pbrt") != std::string::npos);
+  CHECK(f.err.find("5 sensors") != std::string::npos);
+}
+
 TEST_CASE("view refuses what it cannot show before it opens a page") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
@@ -99,6 +115,8 @@ TEST_CASE("view refuses what it cannot show before it opens a page") {
   CHECK(run({scene, "--error", "nan"}) == 2);
   CHECK(run({scene, "--method", "magic"}) == 2);
   CHECK(run({scene, "--at", "48,16,yesterday"}) == 2);
+  CHECK(run({scene, "--annual", folder.path("none")}) == 1);
+  CHECK(run({scene, "--annual", folder.path("")}) == 1);
 }
 
 }  // namespace test_view_command

@@ -1,5 +1,6 @@
 """A year of daylight in Python: closed forms in the open, and equality with the program."""
 import datetime
+import json
 import math
 import os
 import pathlib
@@ -98,39 +99,50 @@ class OpenAir(unittest.TestCase):
                         <= {'met', 'not met', 'undecided'})
 
 
-class Program(unittest.TestCase):
-    ROOM = '''{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
-      "nodes": [{"name": "Floor", "mesh": 0}, {"name": "Pane", "mesh": 1}],
-      "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 2}]},
-                 {"primitives": [{"attributes": {"POSITION": 1}, "indices": 2, "material": 0}]}],
-      "materials": [{"name": "glass", "pbrMetallicRoughness": {"roughnessFactor": 0,
-        "metallicFactor": 0}, "extensions": {"KHR_materials_transmission":
-        {"transmissionFactor": 0.8}}}],
-      "accessors": [
-        {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3",
-         "min": [0, 0, 0], "max": [4, 0, 4]},
-        {"bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC3",
-         "min": [0, 3, 0], "max": [4, 3, 4]},
-        {"bufferView": 2, "componentType": 5123, "count": 6, "type": "SCALAR"}],
-      "bufferViews": [{"buffer": 0, "byteLength": 48},
-                      {"buffer": 0, "byteOffset": 48, "byteLength": 48},
-                      {"buffer": 0, "byteOffset": 96, "byteLength": 12}],
-      "buffers": [{"byteLength": 108, "uri": "room.bin"}]}'''
+ROOM = '''{"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual"],
+  "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 800}]}}, "scene": 0, "scenes": [{"nodes": [0, 1, 2, 3, 4]}],
+  "nodes": [{"name": "Floor", "mesh": 0}, {"name": "Pane", "mesh": 1},
+            LAMPS],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 2}]},
+             {"primitives": [{"attributes": {"POSITION": 1}, "indices": 2, "material": 0}]}],
+  "materials": [{"name": "glass", "pbrMetallicRoughness": {"roughnessFactor": 0,
+    "metallicFactor": 0}, "extensions": {"KHR_materials_transmission":
+    {"transmissionFactor": 0.8}}}],
+  "accessors": [
+    {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3",
+     "min": [0, 0, 0], "max": [4, 0, 4]},
+    {"bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC3",
+     "min": [0, 3, 0], "max": [4, 3, 4]},
+    {"bufferView": 2, "componentType": 5123, "count": 6, "type": "SCALAR"}],
+  "bufferViews": [{"buffer": 0, "byteLength": 48},
+                  {"buffer": 0, "byteOffset": 48, "byteLength": 48},
+                  {"buffer": 0, "byteOffset": 96, "byteLength": 12}],
+  "buffers": [{"byteLength": 108, "uri": "room.bin"}]}'''
+ROOM = ROOM.replace('LAMPS', ', '.join(
+    '{"name": "Panel %d", "translation": [%d, 2.5, 2], "extensions": {"KHR_lights_punctual": {"light": 0}}}'
+    % (k, k) for k in (1, 2, 3)))
 
+
+def write_room(folder):
+    """Writes a floor, a pane above it in two states, and three lamps between them."""
+    corners = np.array([[0, 0, 0], [0, 0, 4], [4, 0, 4], [4, 0, 0]], '<f4')
+    (folder / 'room.bin').write_bytes(
+        corners.tobytes() + (corners + np.float32([0, 3, 0])).tobytes()
+        + np.array([0, 1, 2, 0, 2, 3], '<u2').tobytes())
+    room, groups, points = (folder / n for n in ('room.gltf', 'groups.json', 'desk.csv'))
+    room.write_text(ROOM)
+    groups.write_text('{"groups": [{"name": "Roof", "windows": ["Pane"], "states": '
+                      '[{"name": "clear"}, {"name": "dim", "transmittance": 0.1}]}]}')
+    points.write_text('x,y,z,nx,ny,nz\n1,1,1,0,1,0\n2,1,3,0,1,0\n')
+    return room, groups, points
+
+
+class Program(unittest.TestCase):
     # Two states of the pane above a floor, by the same file of groups.
     def test_equals_the_program(self):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            corners = [[0, 0, 0], [0, 0, 4], [4, 0, 4], [4, 0, 0]]
-            floor = np.array(corners, '<f4')
-            (folder / 'room.bin').write_bytes(
-                floor.tobytes() + (floor + np.float32([0, 3, 0])).tobytes()
-                + np.array([0, 1, 2, 0, 2, 3], '<u2').tobytes())
-            room, groups, points = (folder / n for n in ('room.gltf', 'groups.json', 'desk.csv'))
-            room.write_text(self.ROOM)
-            groups.write_text('{"groups": [{"name": "Roof", "windows": ["Pane"], "states": '
-                              '[{"name": "clear"}, {"name": "dim", "transmittance": 0.1}]}]}')
-            points.write_text('x,y,z,nx,ny,nz\n1,1,1,0,1,0\n2,1,3,0,1,0\n')
+            room, groups, points = write_room(folder)
             epw = weather(folder)
             subprocess.run([os.environ['TROFFER'], 'annual', room, '--weather', epw, '--points',
                             points, '--groups', groups, '-o', folder / 'year', '--gather-rays',
@@ -148,6 +160,84 @@ class Program(unittest.TestCase):
             np.testing.assert_array_equal(
                 year['desk'].standard_error,
                 np.load(folder / 'year/honeybee/standard_error/desk.npy'))
+
+
+class Extras(unittest.TestCase):
+    """Glare, sunlight and electric light, as the program finds them."""
+    EYES = [[1, 1, 1, 1, 0.5, 0], [3, 1, 3, 0, 1, 0]]
+    WINDOW = [[2, 2.9, 2, 0, -1, 0]]
+
+    @classmethod
+    def setUpClass(cls):
+        with tempfile.TemporaryDirectory() as name:
+            folder, epw = pathlib.Path(name), weather(name)
+            room, groups, points = write_room(folder)
+            for name, rows in (('eyes.csv', cls.EYES), ('window.csv', cls.WINDOW)):
+                np.savetxt(folder / name, rows, delimiter=',', header='x,y,z,nx,ny,nz', comments='')
+            subprocess.run(
+                [os.environ['TROFFER'], 'annual', room, '--weather', epw, '--points', points,
+                 '--groups', groups, '-o', folder / 'year', '--eyes', folder / 'eyes.csv',
+                 '--sunlight', folder / 'window.csv', '--sunlight-day', '03-21,11', '--electric',
+                 'Panel 1', '--electric', 'Panel 2,Panel 3', '--electric-target', '300',
+                 '--gather-rays', '64', '--quiet'], check=True)
+            cls.scene = troffer.load(room)
+            cls.year = cls.scene.annual(
+                epw, {'desk': [[1, 1, 1]], 'far': [[2, 1, 3]]}, groups=groups, eyes=cls.EYES,
+                sunlight=cls.WINDOW, sunlight_day='03-21,11',
+                electric=['Panel 1', 'Panel 2,Panel 3'], electric_target=300, gather_rays=64)
+            cls.json = json.loads((folder / 'year/annual.json').read_text())
+            cls.glare = np.loadtxt(folder / 'year/glare.csv', delimiter=',', skiprows=1)
+            cls.table = np.loadtxt(folder / 'year/electric.csv', delimiter=',', skiprows=1,
+                                   usecols=range(4, 8))
+
+    def test_glare(self):
+        self.assertEqual(len(self.year.eyes), len(self.EYES))
+        for k, (eye, found) in enumerate(zip(self.year.eyes, self.json['eyes'])):
+            self.assertEqual(eye.dgp.shape, self.year.hours.shape)
+            self.assertEqual(eye.dgp.dtype, np.float32)
+            np.testing.assert_allclose(eye.vertical, self.glare[:, 2 * k + 1], rtol=1e-4)
+            np.testing.assert_allclose(eye.dgp, self.glare[:, 2 * k + 2], atol=6e-5)
+            self.assertEqual(list(eye.shares), [0.35, 0.4, 0.45])
+            shares = found['share_of_occupied_hours']
+            self.assertEqual(eye.shares[0.45], shares['dgp_above_0.45'])
+            self.assertAlmostEqual(eye.shares[0.35],
+                                   (eye.dgp[self.year.occupied] > np.float32(0.35)).mean())
+            self.assertEqual(eye.level, found['protection_from_glare'])
+
+    def test_sunlight(self):
+        self.assertEqual([(s['hours'], s['level']) for s in self.json['sunlight']],
+                         self.year.sunlight)
+        self.assertGreater(self.year.sunlight[0][0], 0)
+
+    def test_electric(self):
+        self.assertEqual(list(self.year.electric), ['Panel 1', 'Panel 2,Panel 3'])
+        for k, found in enumerate(self.json['electric']):
+            use = self.year.electric[found['group']]
+            for key in ('sensors', 'mean_lx', 'occupied_hours', 'full_load_hours'):
+                self.assertEqual(use[key], found[key])
+            for sensor, grid in enumerate(('desk', 'far')):
+                lx, error = self.year[grid].electric[found['group']]
+                self.assertEqual(lx.shape, (1,))
+                np.testing.assert_allclose(lx[0], self.table[sensor, 2 * k], rtol=1e-5)
+                np.testing.assert_allclose(error[0], self.table[sensor, 2 * k + 1], rtol=1e-2)
+
+    def test_mistakes(self):
+        points = [[1, 0.8, 1]]
+        with tempfile.TemporaryDirectory() as folder:
+            epw = weather(folder)
+            for wrong in ({'eyes': [[0, 0, 1]]}, {'eyes': [[0, 0, 1, 0, 0, 0]]},
+                          {'sunlight': [0, 0, 1, 0, 0, 1]}, {'sunlight_day': 'spring'},
+                          {'electric': 'Lamp'}, {'electric': ['Panel 1', 'Panel*']},
+                          {'electric': 'Panel*', 'electric_target': 0}):
+                with self.assertRaises(ValueError) as raised:
+                    self.scene.annual(epw, points, **wrong)
+                self.assertNotIn('--', str(raised.exception))
+            for wrong in ({'electric': 3}, {'electric': [1]}, {'sunlight_day': 3}):
+                with self.assertRaises(TypeError):
+                    self.scene.annual(epw, points, **wrong)
+            plain = self.scene.annual(epw, points, gather_rays=8)
+        self.assertEqual((plain.eyes, plain.sunlight, plain.electric, plain['points'].electric),
+                         ([], [], {}, {}))
 
 
 class Mistakes(unittest.TestCase):

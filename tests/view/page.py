@@ -6,7 +6,9 @@ import json
 import os
 import signal
 import subprocess
+import struct
 import sys
+import tempfile
 import time
 import urllib.request
 
@@ -15,6 +17,7 @@ try:
     from selenium import webdriver
     from selenium.webdriver.common.action_chains import ActionChains
     from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
     from selenium.webdriver.support.select import Select
 except ImportError:
     print("skipped: python3-selenium is not installed")
@@ -313,6 +316,117 @@ def check_time(program, browser):
     assert page.js("document.querySelector('aside').inert && document.getElementById('overlay').inert")
 
 
+def write_weather(path):
+    """Three days of every month by hours, clear, at 48 degrees north."""
+    lines = ["place Test", "latitude 48", "longitude 0", "time_zone 0", "site_elevation 0",
+             "weather_data_file_units 1"]
+    for month in range(1, 13):
+        for day in (20, 21, 22):
+            for hour in range(24):
+                is_day = 7 <= hour < 17
+                lines.append(f"{month} {day} {hour + 0.5} {600 * is_day} {150 * is_day}")
+    with open(path, "w") as file:
+        file.write("\n".join(lines) + "\n")
+
+
+def array_of(path, sensors):
+    """Rows of a .npy file of floats."""
+    with open(path, "rb") as file:
+        data = file.read()
+    begin = 10 + data[8] + 256 * data[9]
+    values = struct.unpack(f"<{(len(data) - begin) // 4}f", data[begin:])
+    columns = len(values) // sensors
+    return [values[s * columns:(s + 1) * columns] for s in range(sensors)]
+
+
+def check_year(program, browser, folder):
+    """A slider over the year: every value shown is the one in the arrays of `troffer annual`."""
+    scene = os.path.join(root, "scenes/year-office")
+    weather, year = os.path.join(folder, "test.wea"), os.path.join(folder, "year")
+    write_weather(weather)
+    subprocess.run([os.path.abspath(program), "annual", "office.glb", "--weather", weather, "-o", year, "--grid", "Floor,0.8,1",
+                    "--border", "0.5", "--groups", "groups.json", "--subdivision", "1", "--gather-rays", "64",
+                    "--quiet"], cwd=scene, check=True)
+    page = Page(program, [os.path.join(scene, "office.glb"), "--annual", year, "--size", "160x120", "--error",
+                          "0.5", "--at", "48,0,2026-06-21T08:00+00:00", "--quiet"], browser)
+    page.wait("window.year && year.values && year.seen")
+    assert page.js("document.getElementById('year-note').hidden")
+    count, when = page.js("year.sensors.length"), page.js("document.getElementById('year-when').textContent")
+    assert when == "21 March, 12:30", when
+    arrays = {(state, part): array_of(os.path.join(year, "honeybee/South", f"{state}_South", part, "Floor.npy"), count)
+              for state in (0, 1) for part in ("total", "direct")}
+    with open(os.path.join(year, "honeybee/sun-up-hours.txt")) as file:
+        hours = [float(line) for line in file]
+    with open(os.path.join(year, "honeybee/dynamic_schedule.json")) as file:
+        schedule = json.load(file)["South"]["schedule"]
+
+    def check(state, part):
+        """Compares the values shown with a column of the arrays."""
+        hour = page.js("year.hour")
+        assert hours[hour] == page.js("(year.yearStep + 0.5)"), hour
+        page.wait("!year.isAsking")
+        if state is None:
+            state = page.js("year.stateOf(0, year.hour)")
+        expected = [row[hour] for row in arrays[state, part]]
+        shown = page.js("Array.from(year.values)")
+        assert all(abs(a - b) <= 1e-5 * b for a, b in zip(shown, expected)), (hour, shown, expected)
+        assert max(expected) > 0
+
+    check(None, "total")
+    assert set(schedule) == {0, 1}
+    # Tiles cover the canvas where sensors are seen.
+    seen = page.js("year.seen.reduce((a, b) => a + b, 0)")
+    assert 0 < seen <= count and page.js("year.marks.length") == seen
+    page.set("year-through", True)
+    assert page.js("year.marks.length") == count
+    page.screenshot("year")
+    # Sliders, keys, groups, and direct light. The picture follows if asked to.
+    page.set("year-follow", True)
+    page.set("year-step", "9")
+    check(None, "total")
+    page.wait("app.state.time === '2015-03-21T09:30+00:00'")
+    page.wait("document.getElementById('clock').textContent === '09:30 +00:00'")
+    page.set("year-follow", False)
+    page.browser.find_element(By.ID, "year-step").send_keys(Keys.ARROW_RIGHT)
+    assert page.js("year.step") == 10
+    page.browser.find_element(By.ID, "year-day").send_keys(Keys.ARROW_UP)
+    assert page.js("document.getElementById('year-when').textContent") == "22 March, 10:30"
+    check(None, "total")
+    state = page.browser.find_element(By.CSS_SELECTOR, "#year-groups select")
+    for index in (1, 0):
+        Select(state).select_by_index(index + 1)
+        check(index, "total")
+    page.set("year-part", "direct")
+    check(0, "direct")
+    page.set("year-part", "total")
+    Select(state).select_by_index(0)
+    page.wait("!year.isAsking")
+    # A click on a sensor shows its value, its day and its year; a click on the year goes to an hour.
+    index, x, y = page.js("""(() => { const c = document.getElementById('overlay'), m = year.nearest([0.5, 0.7], c, 1e9);
+      return [m.index, m.at[0] / c.width, m.at[1] / c.height]; })()""")
+    page.drag([x, y], [x, y], 1)
+    page.wait("year.chosen && year.chosen.index === arguments[0]", index)
+    text = page.js("document.getElementById('year-sensor').innerText")
+    assert "Floor, sensor" in text and "±" in text, text
+    page.browser.find_element(By.ID, "year-carpet").click()
+    day, step = page.js("[year.day, year.step]")
+    assert 150 < day < 158 and step in (9, 10, 11), (day, step)
+    page.wait("document.getElementById('year-figures').textContent === 'No daylight at this hour.'")
+    page.screenshot("year-sensor")
+    # The scale stays until the user asks for a new one.
+    page.js("year.go(171 * 24 + 12)")
+    page.wait("year.hour !== undefined && !year.isAsking")
+    assert page.js("mostOfYear()") == 2000
+    page.browser.find_element(By.ID, "year-fit").click()
+    assert page.js("mostOfYear()") == page.js("roundUp(quantile(year.values, 0.98))")
+    # Playing goes on to the next hour with the sun up.
+    page.browser.find_element(By.ID, "year-play").click()
+    page.wait("year.step !== 12")
+    page.browser.find_element(By.ID, "year-play").click()
+    check_no_complaints(browser)
+    assert page.end() == 130
+
+
 def main():
     browser = start_browser()
     try:
@@ -331,6 +445,11 @@ def main():
         browser.get("about:blank")
         browser.get_log("browser")
         check_time(sys.argv[1], browser)
+        browser.get("about:blank")
+        browser.get_log("browser")
+        print("check_year", flush=True)
+        with tempfile.TemporaryDirectory() as folder:
+            check_year(sys.argv[1], browser, folder)
     finally:
         browser.quit()
 

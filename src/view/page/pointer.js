@@ -55,7 +55,7 @@ function onMove(event) {
   const {drag} = app;
   if (!drag) {
     app.pointed = placeOf(event);
-    if (measurements.all.length) drawOverlay();
+    if (measurements.all.length || year.isShown) drawOverlay();
     return;
   }
   const at = placeOf(event), [dx, dy] = [at[0] - drag.at[0], at[1] - drag.at[1]];
@@ -82,6 +82,8 @@ async function onUp(event) {
   app.drag = null;
   if (!drag) return;
   try {
+    const isClick = Math.hypot(at[0] - drag.from[0], at[1] - drag.from[1]) < 0.005;
+    if (isClick && (drag.tool === 'orbit' || drag.tool === 'walk')) await year.pick(at, $('overlay'));
     if (drag.tool === 'point') await measurements.pick(...at);
     if (drag.tool === 'grid') await measurements.grid(drag.from, at, Number($('along').value) || 8, Number($('above').value) || 0);
   } catch (error) { say(error.message); }

@@ -131,6 +131,8 @@ function drawOverlay() {
     return at && [at[0] * canvas.width, at[1] * canvas.height];
   };
   const labels = new LabelBoard(g);
+  const depthOf = (p) => dot(add(p, app.camera.eye, -1), app.camera.forward);
+  year.draw(g, toScreen, depthOf, labels, app.pointed);
   measurements.draw(g, toScreen, labels, app.pointed);
   if ($('lines').checked && app.map) drawLines(g, canvas, labels);
   if ($('beside').value) {
@@ -269,6 +271,7 @@ async function tick() {
     if (app.laidOut !== `${w}x${h}`) { app.laidOut = `${w}x${h}`; layOut(); }
     if (await fetchLayers(state)) draw();
     if (await measurements.poll()) wait = 200;
+    if (year.about && year.seenOf !== state.view && isOfView('whole')) await year.look(state.view);
     showStatus(state);
     if (state.stage !== 'done') wait = Math.min(wait, 250);
     if (state.seconds_to_first === 0 || performance.now() - app.movedAt < 1500) wait = 25;
@@ -317,11 +320,13 @@ function begin(state) {
   };
   makeDimmers(state);
   makeTime(state);
+  makeYear(state);
   updateLinks();
 }
 
 function listen() {
   listenToPointers();
+  listenToYear();
   $('stops').oninput = () => { setStops(Number($('stops').value)); updateLinks(); draw(); };
   $('auto').onclick = () => { if (app.pictureShown) setStops(autoStops(app.pictureShown)); updateLinks(); draw(); };
   $('filmic').onchange = () => { updateLinks(); draw(); };
@@ -343,6 +348,3 @@ function listen() {
   $('close').onclick = async () => { await post('close'); showEnd(); };
   window.onresize = layOut;
 }
-
-listen();
-tick();

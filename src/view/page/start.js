@@ -1,0 +1,5 @@
+// Starts the page, once all scripts are there.
+'use strict';
+
+listen();
+tick();
