@@ -107,11 +107,6 @@ std::unique_ptr<Integrator> make_quick(const MethodInput& in, const Occlusion& b
                                           std::make_unique<CellsIndirect>(cells, records));
 }
 
-// Openings that the plan has found; null: none.
-std::shared_ptr<const Openings> openings_of(const MethodPlan& plan) {
-  return plan.forecast ? plan.forecast->openings : nullptr;
-}
-
 // Makes a path tracer that samples as the forecast says, or to the usual number of samples.
 std::unique_ptr<Integrator> make_paths(const MethodPlan& plan, const MethodInput& in) {
   if (!plan.forecast)
@@ -121,7 +116,7 @@ std::unique_ptr<Integrator> make_paths(const MethodPlan& plan, const MethodInput
       in.scene, PathOptions{in.settings.depth, false,
                             sampling_by_paths(*plan.forecast, error_by_paths(in.settings.error),
                                               most_by_paths(in.settings.most_viewing_rays)),
-                            false, nullptr, nullptr, openings_of(plan)});
+                            false, nullptr, nullptr, plan.openings});
 }
 
 // Makes a path tracer that ends at these cells.
@@ -178,7 +173,7 @@ std::unique_ptr<Integrator> paths_if_cheaper(const MethodPlan& plan, const Metho
   const double error = error_by_paths(in.settings.error);
   const int most = most_by_paths(in.settings.most_viewing_rays);
   const PathForecast cached =
-      forecast_paths(*cached_paths(in, cells, {}, openings_of(plan)), *in.cells->view, error, most,
+      forecast_paths(*cached_paths(in, cells, {}, plan.openings), *in.cells->view, error, most,
                      in.cells->seed, in.cells->counters);
   const bool is_cached_possible = cached.is_within(most);
   if (!is_cached_possible && !plan.forecast) {
@@ -194,7 +189,7 @@ std::unique_ptr<Integrator> paths_if_cheaper(const MethodPlan& plan, const Metho
   tell_choice(in, way, cached, is_cached_possible, trial);
   switch (way) {
     case CellWay::cached_paths:
-      return cached_paths(in, cells, sampling_by_paths(cached, error, most), openings_of(plan));
+      return cached_paths(in, cells, sampling_by_paths(cached, error, most), plan.openings);
     case CellWay::paths:
       return make_paths(plan, in);
     case CellWay::gathers:
@@ -225,7 +220,7 @@ std::unique_ptr<Integrator> make_by_cells(const MethodPlan& plan, const MethodIn
       in.scene,
       std::make_unique<StagedDirect>(make_direct(in, by, plan.first), std::move(further), samples),
       std::move(indirect), false,
-      is_picture ? cached_paths(in, cells, {}, openings_of(plan)) : nullptr);
+      is_picture ? cached_paths(in, cells, {}, plan.openings) : nullptr);
   if (plan.may_end_paths_at_cells)
     if (std::unique_ptr<Integrator> paths = paths_if_cheaper(plan, in, cells, *gathers, reflected))
       return paths;

@@ -165,7 +165,8 @@ PathForecast forecast_paths(const Integrator& paths, const PictureView& view, do
   const double pixels = double(view.image.width()) * double(view.image.height());
   f.rays_of_path = cost_of(own) / double(rays.size());
   f.rays = f.rays_of_path * f.viewing_rays * pixels;
-  f.rays_for_cells = f.rays - least_of_pixel(error) * pixels - rays_of_search;
+  f.least_by_cells = least_of_pixel(error) * pixels + rays_of_search;
+  f.rays_for_cells = f.rays - f.least_by_cells;
   return f;
 }
 

@@ -7,10 +7,8 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 
 #include "gather/gather_records.h"
-#include "select/openings.h"
 #include "transport/costs.h"
 #include "transport/integrator.h"
 #include "transport/prepared_scene.h"
@@ -27,8 +25,7 @@ struct PathForecast {
   // Budget for making cells, in rays: `rays` minus the least cost of all other work of a picture by
   // cells. Negative: paths cost less even if cells are free.
   double rays_for_cells = 0;
-  // Openings that the paths use; null: none.
-  std::shared_ptr<const Openings> openings = nullptr;
+  double least_by_cells = 0;  // that least cost
   // True if pixels reach the asked error with at most so many viewing rays. Near the limit of the
   // mean, many pixels would stop before.
   bool is_within(int most) const { return 4 * viewing_rays <= most; }
