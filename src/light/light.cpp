@@ -90,19 +90,6 @@ float pdf_solid_angle(const Scene& scene, const LightPrimitive& p, const Vec3& x
                   [&](auto kind) { return kind.pdf_solid_angle(scene, p, x, wi, distance); });
 }
 
-bool is_all_around(const Scene& scene, const LightPrimitive& p) {
-  const LightKind kind = scene.lights[p.light].kind;
-  return p.portal == nullptr && (kind == LightKind::environment || kind == LightKind::sky);
-}
-
-void sample_towards(const Scene& scene, const LightPrimitive& p, const Vec3& wi, LightSample& out) {
-  out = {};
-  out.wi = wi;
-  out.distance = std::numeric_limits<float>::infinity();
-  out.radiance = radiance_at_infinity(scene, p, Vec3{}, wi);
-  out.pdf_solid_angle = pdf_solid_angle(scene, p, Vec3{}, wi, out.distance);
-}
-
 Rgb emitted_radiance(const Scene& scene, const Light& light, bool is_front, const TexturePlace& uv,
                      const Vec3& towards) {
   return ask_kind(light.kind,

@@ -33,13 +33,6 @@ void sample_many(const Scene& scene, const LightPrimitives& all, size_t n,
 float pdf_solid_angle(const Scene& scene, const LightPrimitive& p, const Vec3& x, const Vec3& wi,
                       float distance);
 
-// True for a piece that is seen in all directions from everywhere: a sky or an environment without
-// a portal.
-bool is_all_around(const Scene& scene, const LightPrimitive& p);
-
-// Sets a sample of such a piece in the unit direction wi, as if sample() had chosen it.
-void sample_towards(const Scene& scene, const LightPrimitive& p, const Vec3& wi, LightSample& out);
-
 // Radiance that leaves a light's surface in the unit direction `towards`, from its front or back,
 // at the texture coordinates uv.
 Rgb emitted_radiance(const Scene& scene, const Light& light, bool is_front, const TexturePlace& uv,

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
 #include "certified/imaged_direct.h"
 #include "certified/staged_direct.h"
 #include "gather/cells_indirect.h"
 #include "light/sky_patches.h"
+#include "methods/cell_way.h"
 #include "methods/gather_trial.h"
 #include "methods/path.h"
 #include "methods/paths_indirect.h"
@@ -115,32 +117,15 @@ std::unique_ptr<Integrator> make_paths(const MethodPlan& plan, const MethodInput
   return std::make_unique<PathIntegrator>(
       in.scene, PathOptions{in.settings.depth, false,
                             sampling_by_paths(*plan.forecast, error_by_paths(in.settings.error),
-                                              most_by_paths(in.settings.most_viewing_rays)),
-                            false, nullptr, nullptr, plan.openings});
+                                              most_by_paths(in.settings.most_viewing_rays))});
 }
 
 // Makes a path tracer that ends at these cells.
 std::unique_ptr<Integrator> cached_paths(const MethodInput& in,
                                          const std::shared_ptr<const Cells>& cells,
-                                         const PixelSampling& sampling,
-                                         const std::shared_ptr<const Openings>& openings) {
+                                         const PixelSampling& sampling) {
   return std::make_unique<PathIntegrator>(
-      in.scene, PathOptions{in.settings.depth, false, sampling, false, nullptr, cells, openings});
-}
-
-// Ways to compute a picture whose cells are made.
-enum class CellWay : uint8_t { gathers, cached_paths, paths };
-
-// Returns the way of least cost, by costs that are uncertain. The cost of plain paths is known
-// best, so other ways have to promise clearly less. Cached paths have to promise clearly less than
-// gathers, because their forecast sees few rare bright rays.
-CellWay cheapest_way(const MethodPlan& plan, const PathForecast& cached, bool is_cached_possible,
-                     double of_gathers) {
-  constexpr double uncertainty = 1.25;  // factor of spread that bench/costs prints
-  const bool is_cached = is_cached_possible && uncertainty * cached.rays < of_gathers;
-  const double least = is_cached ? cached.rays : of_gathers;
-  if (plan.forecast && plan.forecast->rays < uncertainty * least) return CellWay::paths;
-  return is_cached ? CellWay::cached_paths : CellWay::gathers;
+      in.scene, PathOptions{in.settings.depth, false, sampling, false, nullptr, cells});
 }
 
 // Adds the choice and its reasons to the decisions.
@@ -172,9 +157,8 @@ std::unique_ptr<Integrator> paths_if_cheaper(const MethodPlan& plan, const Metho
                                              const Integrator& gathers, CellsIndirect& reflected) {
   const double error = error_by_paths(in.settings.error);
   const int most = most_by_paths(in.settings.most_viewing_rays);
-  const PathForecast cached =
-      forecast_paths(*cached_paths(in, cells, {}, plan.openings), *in.cells->view, error, most,
-                     in.cells->seed, in.cells->counters);
+  const PathForecast cached = forecast_paths(*cached_paths(in, cells, {}), *in.cells->view, error,
+                                             most, in.cells->seed, in.cells->counters);
   const bool is_cached_possible = cached.is_within(most);
   if (!is_cached_possible && !plan.forecast) {
     tell_choice(in, CellWay::gathers, cached, false, {});
@@ -185,11 +169,13 @@ std::unique_ptr<Integrator> paths_if_cheaper(const MethodPlan& plan, const Metho
                    std::max(in.settings.viewing_rays, 1), error, cached},
                   in.cells->stop, in.cells->counters);
   if (!(trial.cost > 0)) return nullptr;
-  const CellWay way = cheapest_way(plan, cached, is_cached_possible, trial.cost);
+  const CellWay way =
+      cheapest_way(plan.forecast ? std::optional(plan.forecast->rays) : std::nullopt,
+                   is_cached_possible ? std::optional(cached.rays) : std::nullopt, trial.cost);
   tell_choice(in, way, cached, is_cached_possible, trial);
   switch (way) {
     case CellWay::cached_paths:
-      return cached_paths(in, cells, sampling_by_paths(cached, error, most), plan.openings);
+      return cached_paths(in, cells, sampling_by_paths(cached, error, most));
     case CellWay::paths:
       return make_paths(plan, in);
     case CellWay::gathers:
@@ -219,8 +205,7 @@ std::unique_ptr<Integrator> make_by_cells(const MethodPlan& plan, const MethodIn
   auto gathers = std::make_unique<WaveIntegrator>(
       in.scene,
       std::make_unique<StagedDirect>(make_direct(in, by, plan.first), std::move(further), samples),
-      std::move(indirect), false,
-      is_picture ? cached_paths(in, cells, {}, plan.openings) : nullptr);
+      std::move(indirect), false, is_picture ? cached_paths(in, cells, {}) : nullptr);
   if (plan.may_end_paths_at_cells)
     if (std::unique_ptr<Integrator> paths = paths_if_cheaper(plan, in, cells, *gathers, reflected))
       return paths;
@@ -245,7 +230,7 @@ MethodPlan plan_cached_path(const MethodInput& in) {
 std::unique_ptr<Integrator> make_cached_path(const MethodPlan& plan, const MethodInput& in) {
   const CertifiedDirect at_cells(in.scene, occluders_for(in), plan.at_cells);
   const std::shared_ptr<const Cells> cells = cells_of(plan, in, at_cells, 1);
-  return cells ? cached_paths(in, cells, {}, nullptr) : nullptr;
+  return cells ? cached_paths(in, cells, {}) : nullptr;
 }
 
 std::unique_ptr<Integrator> make_certified(const MethodPlan& plan, const MethodInput& in) {

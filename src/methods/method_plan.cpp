@@ -6,7 +6,6 @@
 
 #include "base/ablation.h"
 #include "methods/methods.h"
-#include "methods/openings_training.h"
 #include "methods/path.h"
 
 namespace troffer {
@@ -62,32 +61,14 @@ bool may_be_by_paths(const MethodInput& in) {
          in.cells->store == nullptr;
 }
 
-PathForecast forecast_with(const MethodInput& in, std::shared_ptr<const Openings> openings) {
-  PathOptions options;
-  options.openings = std::move(openings);
-  return forecast_paths(
-      PathIntegrator(in.scene, options), *in.cells->view, error_by_paths(in.settings.error),
-      most_by_paths(in.settings.most_viewing_rays), in.cells->seed, in.cells->counters);
-}
-
-// Sets the forecast for path tracing, unless paths cannot reach the asked error, and the openings
-// of the sky if these make paths cheaper.
-void forecast_by_openings(MethodPlan& plan, const MethodInput& in) {
-  // Cost of finding openings: a share of what the picture would take by paths without them, and of
-  // the least that it takes by cells, so that it is small whatever the picture is made by.
-  constexpr double share_of_paths = 0.05, share_of_cells = 0.2;
-  PathForecast f = forecast_with(in, nullptr);
-  const double rays = std::min(share_of_paths * f.rays, share_of_cells * f.least_by_cells);
-  plan.openings = find_openings(in.scene, *in.cells->view, f, rays, in.cells->seed,
-                                in.settings.threads, in.cells->counters);
-  if (plan.openings) {
-    const PathForecast by_openings = forecast_with(in, plan.openings);
-    if (by_openings.rays < f.rays)
-      f = by_openings;
-    else
-      plan.openings = nullptr;
-  }
-  if (f.is_within(most_by_paths(in.settings.most_viewing_rays))) plan.forecast = f;
+// Returns the forecast for path tracing, or nothing if it cannot reach the asked error.
+std::optional<PathForecast> forecast(const MethodInput& in) {
+  const CellInput& cells = *in.cells;
+  const int most = most_by_paths(in.settings.most_viewing_rays);
+  const PathForecast f =
+      forecast_paths(PathIntegrator(in.scene, {}), *cells.view, error_by_paths(in.settings.error),
+                     most, cells.seed, in.cells->counters);
+  return f.is_within(most) ? std::optional(f) : std::nullopt;
 }
 
 std::string sampling_in_words(const CertifiedSettings& s) {
@@ -171,7 +152,7 @@ MethodPlan plan_certified(const MethodInput& in) {
   if (needs_cells(Method::certified, in.settings.indirect)) {
     plan.may_end_paths_at_cells = may_be_by_paths(in) && !is_left_out<"cached paths">();
     if (may_be_by_paths(in) && !is_left_out<"paths instead of cells">())
-      forecast_by_openings(plan, in);
+      plan.forecast = forecast(in);
     if (plan.forecast && plan.forecast->rays_for_cells < 0) {
       plan.parts.push_back(
           {"all light", "path tracing",

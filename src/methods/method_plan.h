@@ -5,14 +5,12 @@
 
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "certified/certified_direct.h"
 #include "methods/path_forecast.h"
-#include "select/openings.h"
 
 namespace troffer {
 
@@ -38,8 +36,6 @@ struct MethodPlan {
   std::vector<PlannedPart> parts;
   // Test of path tracing, where paths may replace cells.
   std::optional<PathForecast> forecast;
-  // Openings by which paths of all kinds find the sky; null: none.
-  std::shared_ptr<const Openings> openings;
   // True if paths that end at cells may replace gathers.
   bool may_end_paths_at_cells = false;
 

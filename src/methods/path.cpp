@@ -52,7 +52,7 @@ struct PathIntegrator::Scratch final : IntegratorScratch {
   WaveHits wave;    // walks[i] stands at vertices[i]; `hits` is unused
   WaveHits imaged;  // vertices that a mirror image may light
   WalkScratch trace;
-  LightTreeDirectScratch lights, lights_of_images;
+  LightTreeDirectScratch lights;
   ResampledDirectScratch few_lights;
   std::vector<uint64_t> streams;
   std::vector<uint32_t> samples;
@@ -87,17 +87,6 @@ void PathIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& scratc
     start_walks(rays, first, std::min(first + most_at_a_time, rays.size()), s.wave.walks);
     follow(s, Coherence::coherent, out, counters);
   }
-}
-
-void PathIntegrator::radiance_and_samples(const ViewingRays& rays, uint32_t piece,
-                                          IntegratorScratch& scratch,
-                                          std::vector<SkySample>& record, RadianceBatch& out,
-                                          Counters& counters) const {
-  auto& s = static_cast<Scratch&>(scratch);
-  s.lights.record = &record;
-  s.lights.recorded = piece;
-  radiance(rays, scratch, out, counters);
-  s.lights.record = nullptr;
 }
 
 void PathIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& scratch,
@@ -264,8 +253,8 @@ void PathIntegrator::add_images(Scratch& s, RadianceBatch& out, Counters& counte
       walk.stream = hash_of(walk.stream, stream::mirror_image_of_path, uint64_t(m));
     }
     if (s.imaged.size() == 0) continue;
-    lit_images_[m].queue(s.imaged, s.lights_of_images, out, counters);
-    lit_images_[m].flush(s.lights_of_images, out, counters);
+    lit_images_[m].queue(s.imaged, s.lights, out, counters);
+    lit_images_[m].flush(s.lights, out, counters);
   }
 }
 

@@ -32,16 +32,12 @@ struct PathOptions {
   // Cells at which paths end: the first matte reflection after a scattering reads the irradiance
   // there, if the ray is longer than a few cells. Null: paths end by roulette alone.
   std::shared_ptr<const Cells> cells = nullptr;
-  // Openings that let the light of a sky in (openings_training.h). Null: not known.
-  std::shared_ptr<const Openings> openings = nullptr;
 };
 
 class PathIntegrator final : public Integrator {
  public:
   PathIntegrator(const PreparedScene& scene, const PathOptions& options)
-      : scene_(scene),
-        options_(options),
-        tree_(scene, LightTreeDirect::Competition::all, options.openings) {
+      : scene_(scene), options_(options), tree_(scene, LightTreeDirect::Competition::all) {
     if (ResampledDirect::suits(scene)) few_lights_.emplace(scene);
     if (!options_.images && !options_.is_direct_only)
       options_.images = MirrorImages::of_relays(scene);
@@ -56,10 +52,6 @@ class PathIntegrator final : public Integrator {
                 Counters& counters) const override;
   void irradiance(const SensorBatch& sensors, IntegratorScratch& scratch, RadianceBatch& out,
                   Counters& counters) const override;
-  // radiance() that also adds the light samples of one piece to `record`.
-  void radiance_and_samples(const ViewingRays& rays, uint32_t piece, IntegratorScratch& scratch,
-                            std::vector<SkySample>& record, RadianceBatch& out,
-                            Counters& counters) const;
 
  private:
   struct Scratch;

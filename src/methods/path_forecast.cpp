@@ -163,10 +163,8 @@ PathForecast forecast_paths(const Integrator& paths, const PictureView& view, do
     set_rays(tiles, error, most, f);
   }
   const double pixels = double(view.image.width()) * double(view.image.height());
-  f.rays_of_path = cost_of(own) / double(rays.size());
-  f.rays = f.rays_of_path * f.viewing_rays * pixels;
-  f.least_by_cells = least_of_pixel(error) * pixels + rays_of_search;
-  f.rays_for_cells = f.rays - f.least_by_cells;
+  f.rays = cost_of(own) / double(rays.size()) * f.viewing_rays * pixels;
+  f.rays_for_cells = f.rays - least_of_pixel(error) * pixels - rays_of_search;
   return f;
 }
 

@@ -18,14 +18,12 @@ namespace troffer {
 struct PathForecast {
   double viewing_rays = 0;  // mean per pixel for the asked error
   double rays = 0;          // rays of all kinds, for the whole picture
-  double rays_of_path = 0;  // of all kinds, for one viewing ray
   double evenness = 0;      // of a pixel's paths (PixelSampling::evenness)
   double proportion = 0;    // PixelSampling::proportion
   double typical = 0;       // usual luminance of the picture (allowed_error.h)
   // Budget for making cells, in rays: `rays` minus the least cost of all other work of a picture by
   // cells. Negative: paths cost less even if cells are free.
   double rays_for_cells = 0;
-  double least_by_cells = 0;  // that least cost
   // True if pixels reach the asked error with at most so many viewing rays. Near the limit of the
   // mean, many pixels would stop before.
   bool is_within(int most) const { return 4 * viewing_rays <= most; }

@@ -5,12 +5,10 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "light/light.h"
 #include "select/light_tree.h"
-#include "select/openings.h"
 #include "transport/direct_light.h"
 
 namespace troffer {
@@ -30,13 +28,6 @@ struct LightTreeDirectScratch final : DirectLightScratch {
   std::vector<LightSample> points;
   std::vector<uint8_t> is_valid;
   LightSampleScratch light_samples;
-  // Number by which openings choose the direction; negative: the tree has chosen.
-  std::vector<float> by_openings;
-  std::vector<float> pdf_of_openings;  // of the point: density of that choice, per steradian
-  // If set, all samples of the piece `recorded` are added to it.
-  std::vector<SkySample>* record = nullptr;
-  uint32_t recorded = 0;
-  std::vector<uint32_t> ray_of_record;  // index in `shadows`, for the last samples of `record`
 
   void resize(size_t n);
 };
@@ -46,11 +37,9 @@ class LightTreeDirect final : public DirectLight {
   // Surfaces at which walks continue by BSDF sampling and count the emission that they hit: all but
   // Lambertian ones; all, as in path tracing; none. With none, shadow rays bring all light.
   enum class Competition { glossy, all, none };
-  // openings: choose a part of the directions of a sky; null: its own table chooses all of them.
   explicit LightTreeDirect(const PreparedScene& scene,
-                           Competition competition = Competition::glossy,
-                           std::shared_ptr<const Openings> openings = nullptr)
-      : scene_(scene), competition_(competition), openings_(std::move(openings)) {}
+                           Competition competition = Competition::glossy)
+      : scene_(scene), competition_(competition) {}
 
   std::unique_ptr<DirectLightScratch> make_scratch() const override;
   WalkedPart walked_part() const override { return WalkedPart::whole; }
@@ -67,13 +56,9 @@ class LightTreeDirect final : public DirectLight {
  private:
   bool has_competition(const Bsdf& bsdf) const;
   size_t choose_lights(const WaveHits& wave, LightTreeDirectScratch& s) const;
-  void share_numbers(LightTreeDirectScratch& s) const;
-  void sample_openings(const WaveHits& wave, size_t points, LightTreeDirectScratch& s) const;
-  float pmf_at(const Walk& walk, uint32_t primitive) const;
 
   const PreparedScene& scene_;
   Competition competition_;
-  std::shared_ptr<const Openings> openings_;
 };
 
 }  // namespace troffer
