@@ -69,7 +69,7 @@ TEST_CASE("answers on hours and sensors equal the arrays") {
   }
   CHECK(ask("year/hour", "4", "direct", "1")[0] ==
         StoredFolder::beside(0, 4) / 16 + StoredFolder::south(0, 4, 1) / 16);
-  // By schedule, errors follow the hours; for other states they are unknown.
+  // Errors follow the hours by schedule; they are unknown for other states.
   const std::vector<float> sensor = ask("year/sensor", "2", "total", "-1");
   REQUIRE(sensor.size() == 2 * StoredFolder::hours);
   CHECK(sensor[5] == StoredFolder::beside(2, 5) + StoredFolder::south(2, 5, 1));

@@ -14,7 +14,9 @@ class YearOfDaylight {
     this.values = null;  // of all sensors in the hour shown, lx
     this.kept = new Map();  // values of hours by request
     this.seen = null;  // per sensor: 1 if the view shows it
-    this.chosen = null;  // {index, total, values, errors}: the sensor clicked
+    this.chosen = null;  // {index, values, errors}: the sensor clicked, once its year is there
+    this.wanted = null;  // index of the sensor clicked last
+    this.choices = 0;
     this.day = this.step = 0;
     this.isAsking = this.isAskPending = false;
   }
@@ -117,25 +119,29 @@ class YearOfDaylight {
     if (hour === undefined) return new Float32Array(this.about.sensors);
     const key = `year/hour?number=${hour}&${this.asked}`;
     if (!this.kept.has(key)) {
-      if (this.kept.size >= 500) this.kept.clear();
+      if (this.kept.size * this.about.sensors > 5e6) this.kept.clear();  // 20 MB
       this.kept.set(key, new Float32Array(await this.numbers(key)));
     }
     return this.kept.get(key);
   }
-  // Fetches the year of a sensor. A sensor that stays chosen gets the year of other states.
+  // Fetches the year of a sensor. Answers may arrive late: only that of the last choice counts.
   async choose(index) {
-    if (index === null) {
-      this.chosen = null;
-    } else {
+    const choice = ++this.choices;
+    this.wanted = index;
+    let chosen = null;
+    if (index !== null) {
       const all = new Float32Array(await this.numbers(`year/sensor?number=${index}&${this.asked}`));
       const count = this.about.hours.length;
-      this.chosen = {index, values: all.subarray(0, count), errors: all.length > count ? all.subarray(count) : null};
+      chosen = {index, values: all.subarray(0, count), errors: all.length > count ? all.subarray(count) : null};
     }
+    if (choice !== this.choices) return;
+    this.chosen = chosen;
     this.changed();
   }
+  // A sensor that stays chosen gets the year of other states.
   async changeAsked() {
     this.update();
-    if (this.chosen) await this.choose(this.chosen.index);
+    if (this.wanted !== null) await this.choose(this.wanted);
   }
   async look(view) {
     this.seenOf = view;
