@@ -32,14 +32,10 @@ void LinearFit::add(float u, float v, float kernel, float rays, Rgb value) {
   ++count_;
 }
 
-double LinearFit::offset() const {
-  return weights_.one > 0 ? std::hypot(weights_.u, weights_.v) / weights_.one : 0;
-}
-
 bool LinearFit::solve(FittedLight& out) const {
   const Moments& m = weights_;
   if (!(m.one > 0)) return false;
-  const bool is_plane = this->is_plane();
+  const bool is_plane = count_ >= least_neighbours;
   const double more = is_plane ? ridge * m.one : 1e12 * m.one;
   const double uu = m.uu + more, vv = m.vv + more;
   // First row of the inverse of the normal equations' matrix: gives the value at the origin.

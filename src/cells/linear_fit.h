@@ -21,10 +21,6 @@ class LinearFit {
   // variance.
   void add(float u, float v, float kernel, float rays, Rgb value);
   int count() const { return count_; }
-  // True if there are enough neighbours for a plane.
-  bool is_plane() const { return count_ >= least_neighbours; }
-  // Returns the distance of the weighted centroid from the origin, in radii.
-  double offset() const;
   // Sets `out`. False if there are too few neighbours for a plane: `out` is then their mean.
   bool solve(FittedLight& out) const;
 

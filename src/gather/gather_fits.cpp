@@ -23,9 +23,6 @@ constexpr float least_pixels = 1.5f;
 constexpr float reach_of_error = 2, most_reach = 0.2f;
 // Inverse of the lobe width from which on gloss changes no faster than irradiance.
 constexpr float full_width = 2;
-// Too few neighbours for a plane give their mean, which holds only near their centroid: within this
-// share of the harmonic mean distance, times the asked error.
-constexpr double most_offset = 0.5;
 // Limits of neighbours that a fit reads on either side. Within its radius it skips pixels to keep
 // them.
 constexpr int few_along = 4, many_along = 8;
@@ -223,8 +220,7 @@ float GatherFits::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) 
   const double excess = light.spread / std::max(light.neighbours, 1.0) / (allowed * allowed);
   if (!is_left_out<"radius by noise">()) radius *= float(std::clamp(std::sqrt(excess), 0.5, 2.0));
   radius = std::clamp(radius, least, std::clamp(far_radius * distance, least, most));
-  const LinearFit all = fit(x, y, r, part, radius, many_along);
-  const FittedLight fine = solved(all, s);
+  const FittedLight fine = solved(fit(x, y, r, part, radius, many_along), s);
   const double noise = fine.spread / std::max(fine.neighbours, 1.0);
   // The bias of a fit goes with radius². It is therefore 4/3 of what a fit of half the radius
   // differs by beyond its noise.
@@ -235,10 +231,6 @@ float GatherFits::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) 
   const double half = double((at.*part).half) / double(at.rays);
   fitted.value = fine.value;
   fitted.error = float(std::sqrt(noise + bend2 + half * half));
-  // Decided by where neighbours lie, not by what they have met. Fits left out by their noise would
-  // be those that have met a small bright thing, and those that missed it would stay.
-  fitted.is_one_sided = !all.is_plane() && all.offset() * double(radius) >
-                                               most_offset * options_.error * double(distance);
   return distance;
 }
 
@@ -263,9 +255,7 @@ FittedRecord GatherFits::fitted(int x, int y, uint32_t r) const {
   // Away from its record, the error of a fit goes with the square of the distance.
   const float reach =
       std::min(reach_of_error * std::sqrt(float(options_.error)), most_reach) * distance;
-  const bool is_one_sided =
-      !is_left_out<"one-sided fits">() && (matte.is_one_sided || gloss.is_one_sided);
-  f.is_alone = behind_edge_[r] != 0 || is_one_sided;
+  f.is_alone = behind_edge_[r] != 0;
   f.reach = at.spacing > reach || f.is_alone ? 0 : reach;
   f.rays = std::min(std::max(own_rays(x, y, r, &GatherRecord::matte),
                              at.place.is_there() ? own_rays(x, y, r, &GatherRecord::gloss) : 0.0f),

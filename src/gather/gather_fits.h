@@ -55,8 +55,7 @@ class GatherFits {
   // Fit of one sum.
   struct Fitted {
     Rgb value;
-    float error = 0;            // estimated error of the luminance of `value`
-    bool is_one_sided = false;  // mean of neighbours that lie to one side
+    float error = 0;  // estimated error of the luminance of `value`
   };
   // Choice of the records around one that are read.
   enum class Asked : uint8_t { all, other_half };

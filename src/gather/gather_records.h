@@ -78,7 +78,7 @@ struct FittedRecord {
   float gloss_error = 0;
   float rays = 0;  // gather rays of a viewing ray that cannot use the fit
   // True if lookups fail where this record is the nearest: another surface stands close in front of
-  // it, or its few neighbours lie on one side.
+  // it.
   bool is_alone = false;
 };
 

@@ -114,18 +114,12 @@ std::unique_ptr<Integrator> make_paths(const MethodPlan& plan, const MethodInput
   if (!plan.forecast)
     return std::make_unique<PathIntegrator>(
         in.scene, PathOptions{in.settings.depth, in.settings.is_direct_only()});
-  return std::make_unique<PathIntegrator>(
-      in.scene, PathOptions{in.settings.depth, false,
-                            sampling_by_paths(*plan.forecast, error_by_paths(in.settings.error),
-                                              most_by_paths(in.settings.most_viewing_rays))});
-}
-
-// Makes a path tracer that ends at these cells.
-std::unique_ptr<Integrator> cached_paths(const MethodInput& in,
-                                         const std::shared_ptr<const Cells>& cells,
-                                         const PixelSampling& sampling) {
-  return std::make_unique<PathIntegrator>(
-      in.scene, PathOptions{in.settings.depth, false, sampling, false, nullptr, cells});
+  PathOptions options;
+  options.depth = in.settings.depth;
+  options.sampling = sampling_by_paths(*plan.forecast, error_by_paths(in.settings.error),
+                                       most_by_paths(in.settings.most_viewing_rays));
+  options.light_samples = plan.forecast->light_samples;
+  return std::make_unique<PathIntegrator>(in.scene, options);
 }
 
 // Adds the choice and its reasons to the decisions.
@@ -133,8 +127,10 @@ void tell_choice(const MethodInput& in, CellWay way, const PathForecast& cached,
                  bool is_cached_possible, const GatherTrial& trial) {
   std::string reason =
       is_cached_possible
-          ? fmt::format("they would take {:.3g} viewing rays per pixel and {:.3g} million rays",
-                        cached.viewing_rays, cached.rays * 1e-6)
+          ? fmt::format(
+                "they would take {:.3g} viewing rays per pixel with {} light samples each, "
+                "and {:.3g} million rays",
+                cached.viewing_rays, cached.light_samples, cached.rays * 1e-6)
           : fmt::format("they would take more than a quarter of {} viewing rays per pixel",
                         most_by_paths(in.settings.most_viewing_rays));
   if (trial.cost > 0)
@@ -149,23 +145,22 @@ void tell_choice(const MethodInput& in, CellWay way, const PathForecast& cached,
         {"all light", "path tracing instead", "cells would not clearly cost less"});
 }
 
-// Returns path tracing, plain or to the first cell, if test paths and gathers in a few windows of
-// the picture show that it costs less; null otherwise. gathers: the integrator that reads the
-// records of `reflected`.
+// Returns path tracing, plain or with the options `to_cells`, if test paths and gathers in a few
+// windows of the picture show that it costs less; null otherwise. cached: forecast of paths to the
+// cells. gathers: the integrator that reads the records of `reflected`.
 std::unique_ptr<Integrator> paths_if_cheaper(const MethodPlan& plan, const MethodInput& in,
-                                             const std::shared_ptr<const Cells>& cells,
+                                             PathOptions to_cells, const PathForecast& cached,
                                              const Integrator& gathers, CellsIndirect& reflected) {
   const double error = error_by_paths(in.settings.error);
   const int most = most_by_paths(in.settings.most_viewing_rays);
-  const PathForecast cached = forecast_paths(*cached_paths(in, cells, {}), *in.cells->view, error,
-                                             most, in.cells->seed, in.cells->counters);
   const bool is_cached_possible = cached.is_within(most);
   if (!is_cached_possible && !plan.forecast) {
     tell_choice(in, CellWay::gathers, cached, false, {});
     return nullptr;
   }
+  const Cells& cells = *to_cells.cells;
   const GatherTrial trial =
-      try_gathers({gathers, reflected, *cells, *in.cells->view, gather_options(in, *cells),
+      try_gathers({gathers, reflected, cells, *in.cells->view, gather_options(in, cells),
                    std::max(in.settings.viewing_rays, 1), error, cached},
                   in.cells->stop, in.cells->counters);
   if (!(trial.cost > 0)) return nullptr;
@@ -175,7 +170,8 @@ std::unique_ptr<Integrator> paths_if_cheaper(const MethodPlan& plan, const Metho
   tell_choice(in, way, cached, is_cached_possible, trial);
   switch (way) {
     case CellWay::cached_paths:
-      return cached_paths(in, cells, sampling_by_paths(cached, error, most));
+      to_cells.sampling = sampling_by_paths(cached, error, most);
+      return std::make_unique<PathIntegrator>(in.scene, to_cells);
     case CellWay::paths:
       return make_paths(plan, in);
     case CellWay::gathers:
@@ -200,14 +196,24 @@ std::unique_ptr<Integrator> make_by_cells(const MethodPlan& plan, const MethodIn
       plan.further.draws > 0 ? make_direct(in, by, plan.further) : std::move(at_cells);
   constexpr auto all = std::numeric_limits<uint32_t>::max();
   const uint32_t samples = is_picture ? uint32_t(in.settings.viewing_rays) : all;
+  PathOptions to_cells;
+  to_cells.depth = in.settings.depth;
+  to_cells.cells = cells;
+  std::optional<PathForecast> cached;
+  if (plan.may_end_paths_at_cells) {
+    cached = forecast(in, to_cells);
+    to_cells.light_samples = cached->light_samples;
+  }
   auto indirect = std::make_unique<CellsIndirect>(cells, nullptr);
   CellsIndirect& reflected = *indirect;
   auto gathers = std::make_unique<WaveIntegrator>(
       in.scene,
       std::make_unique<StagedDirect>(make_direct(in, by, plan.first), std::move(further), samples),
-      std::move(indirect), false, is_picture ? cached_paths(in, cells, {}) : nullptr);
-  if (plan.may_end_paths_at_cells)
-    if (std::unique_ptr<Integrator> paths = paths_if_cheaper(plan, in, cells, *gathers, reflected))
+      std::move(indirect), false,
+      is_picture ? std::make_unique<PathIntegrator>(in.scene, to_cells) : nullptr);
+  if (cached)
+    if (std::unique_ptr<Integrator> paths =
+            paths_if_cheaper(plan, in, to_cells, *cached, *gathers, reflected))
       return paths;
   std::shared_ptr<const GatherRecords> records;
   if (is_picture) records = gather(in, *cells);
@@ -230,7 +236,11 @@ MethodPlan plan_cached_path(const MethodInput& in) {
 std::unique_ptr<Integrator> make_cached_path(const MethodPlan& plan, const MethodInput& in) {
   const CertifiedDirect at_cells(in.scene, occluders_for(in), plan.at_cells);
   const std::shared_ptr<const Cells> cells = cells_of(plan, in, at_cells, 1);
-  return cells ? cached_paths(in, cells, {}) : nullptr;
+  if (!cells) return nullptr;
+  PathOptions options;
+  options.depth = in.settings.depth;
+  options.cells = cells;
+  return std::make_unique<PathIntegrator>(in.scene, options);
 }
 
 std::unique_ptr<Integrator> make_certified(const MethodPlan& plan, const MethodInput& in) {

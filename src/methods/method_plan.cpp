@@ -61,16 +61,6 @@ bool may_be_by_paths(const MethodInput& in) {
          in.cells->store == nullptr;
 }
 
-// Returns the forecast for path tracing, or nothing if it cannot reach the asked error.
-std::optional<PathForecast> forecast(const MethodInput& in) {
-  const CellInput& cells = *in.cells;
-  const int most = most_by_paths(in.settings.most_viewing_rays);
-  const PathForecast f =
-      forecast_paths(PathIntegrator(in.scene, {}), *cells.view, error_by_paths(in.settings.error),
-                     most, cells.seed, in.cells->counters);
-  return f.is_within(most) ? std::optional(f) : std::nullopt;
-}
-
 std::string sampling_in_words(const CertifiedSettings& s) {
   std::string text = fmt::format("certificates and masks, allowed error {:.3g}", s.error);
   if (s.draws > 0) text += fmt::format("; {} light samples where those cost less", s.draws);
@@ -123,6 +113,13 @@ int most_by_paths(int asked) {
   return asked > 0 ? asked : most;
 }
 
+PathForecast forecast(const MethodInput& in, const PathOptions& options) {
+  return forecast_paths(paths_with_light_samples(in.scene, options), *in.cells->view,
+                        error_by_paths(in.settings.error),
+                        most_by_paths(in.settings.most_viewing_rays), in.cells->seed,
+                        in.cells->counters);
+}
+
 double error_beyond_first(const MethodInput& in) {
   constexpr double least_error = 0.1;
   return std::max(in.settings.error, least_error);
@@ -151,8 +148,10 @@ MethodPlan plan_certified(const MethodInput& in) {
   }
   if (needs_cells(Method::certified, in.settings.indirect)) {
     plan.may_end_paths_at_cells = may_be_by_paths(in) && !is_left_out<"cached paths">();
-    if (may_be_by_paths(in) && !is_left_out<"paths instead of cells">())
-      plan.forecast = forecast(in);
+    if (may_be_by_paths(in) && !is_left_out<"paths instead of cells">()) {
+      const PathForecast f = forecast(in, {});
+      if (f.is_within(most_by_paths(in.settings.most_viewing_rays))) plan.forecast = f;
+    }
     if (plan.forecast && plan.forecast->rays_for_cells < 0) {
       plan.parts.push_back(
           {"all light", "path tracing",

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "certified/certified_direct.h"
+#include "methods/path.h"
 #include "methods/path_forecast.h"
 
 namespace troffer {
@@ -66,6 +67,8 @@ constexpr double error_by_paths(double asked) {
 // Returns the limit of viewing rays per pixel of a path-traced picture. asked: the user's limit; 0
 // if there is none.
 int most_by_paths(int asked);
+// Forecasts what the picture costs by paths with these options.
+PathForecast forecast(const MethodInput& in, const PathOptions& options);
 
 // Returns the allowed error of direct light beyond the first surface: at cells, and at surfaces
 // that are seen in gloss. It is at least 0.1, because errors of many cells average out and gloss

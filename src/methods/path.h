@@ -32,12 +32,17 @@ struct PathOptions {
   // Cells at which paths end: the first matte reflection after a scattering reads the irradiance
   // there, if the ray is longer than a few cells. Null: paths end by roulette alone.
   std::shared_ptr<const Cells> cells = nullptr;
+  // Light samples at the first surface that scatters. Later ones take one. Unused where
+  // resampled_direct.h suits the scene.
+  uint32_t light_samples = 1;
 };
 
 class PathIntegrator final : public Integrator {
  public:
   PathIntegrator(const PreparedScene& scene, const PathOptions& options)
-      : scene_(scene), options_(options), tree_(scene, LightTreeDirect::Competition::all) {
+      : scene_(scene),
+        options_(options),
+        tree_(scene, LightTreeDirect::Competition::all, options.light_samples) {
     if (ResampledDirect::suits(scene)) few_lights_.emplace(scene);
     if (!options_.images && !options_.is_direct_only)
       options_.images = MirrorImages::of_relays(scene);
@@ -77,5 +82,14 @@ class PathIntegrator final : public Integrator {
   std::optional<ResampledDirect> few_lights_;  // replaces the tree where it is set
   std::vector<LightTreeDirect> lit_images_;    // one for each of options_.images
 };
+
+// Returns a function that makes path tracers with these options and a number of light samples.
+inline auto paths_with_light_samples(const PreparedScene& scene, const PathOptions& options) {
+  return [&scene, options](uint32_t light_samples) -> std::unique_ptr<Integrator> {
+    PathOptions with = options;
+    with.light_samples = light_samples;
+    return std::make_unique<PathIntegrator>(scene, with);
+  };
+}
 
 }  // namespace troffer

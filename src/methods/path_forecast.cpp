@@ -145,25 +145,67 @@ void set_rays(const std::vector<Tile>& tiles, double error, int most, PathForeca
   f.viewing_rays = std::max(sum / double(wanted.size()), double(least_first));
 }
 
+// What test paths with one number of light samples show.
+struct Tested {
+  std::vector<Tile> tiles;
+  double cost = 0;  // of a path
+};
+
+Tested test_paths(const PathsToTest& paths, uint32_t light_samples, const ViewingRays& rays,
+                  uint64_t stream, Counters& counters) {
+  Counters own;
+  Tested t;
+  t.tiles = tiles_of(stream, luminances(*paths(light_samples), rays, own));
+  t.cost = cost_of(own) / double(rays.size());
+  counters += own;
+  return t;
+}
+
+// Returns the variance over the squared allowed error, summed over all test pixels, and the cost.
+PathTest summed(const Tested& t, double error, double typical) {
+  PathTest sum{0, t.cost};
+  for (const Tile& tile : t.tiles)
+    sum.variance +=
+        tile.pixels * tile.variance / sqr(allowed_error(error, tile.luminance, typical));
+  return sum;
+}
+
 }  // namespace
 
-PathForecast forecast_paths(const Integrator& paths, const PictureView& view, double error,
+uint32_t cheapest_light_samples(const PathTest& one, const PathTest& few) {
+  constexpr double k = few_light_samples;
+  const double shared = std::max((one.variance - few.variance) * k / (k - 1), 0.0),
+               rest = std::max(one.variance - shared, 0.0),
+               sample = std::max((few.cost - one.cost) / (k - 1), 0.0);
+  const auto work = [&](uint32_t n) { return (rest + shared / n) * (one.cost + sample * (n - 1)); };
+  uint32_t best = 1;
+  for (uint32_t n = 2; n <= most_light_samples; n *= 2)
+    if (work(n) < work(best)) best = n;
+  return best;
+}
+
+PathForecast forecast_paths(const PathsToTest& paths, const PictureView& view, double error,
                             int most, uint64_t seed, Counters& counters) {
-  Counters own;
   const uint64_t stream = hash_of(seed, stream::path_forecast);
   const ViewingRays rays = sets_of_rays(view, stream);
-  const std::vector<Tile> tiles = tiles_of(stream, luminances(paths, rays, own));
-  counters += own;
+  Tested best = test_paths(paths, 1, rays, stream, counters);
   PathForecast f;
-  f.typical = typical_of(tiles);
+  f.typical = typical_of(best.tiles);
   // If so few paths see nothing in most of the picture, the forecast is infinite.
   f.viewing_rays = std::numeric_limits<double>::infinity();
   if (f.typical > 0) {
-    f.evenness = evenness_of(tiles, error, f.typical);
-    set_rays(tiles, error, most, f);
+    Tested few = test_paths(paths, few_light_samples, rays, stream, counters);
+    f.light_samples =
+        cheapest_light_samples(summed(best, error, f.typical), summed(few, error, f.typical));
+    if (f.light_samples == few_light_samples)
+      best = std::move(few);
+    else if (f.light_samples > 1)
+      best = test_paths(paths, f.light_samples, rays, stream, counters);
+    f.evenness = evenness_of(best.tiles, error, f.typical);
+    set_rays(best.tiles, error, most, f);
   }
   const double pixels = double(view.image.width()) * double(view.image.height());
-  f.rays = cost_of(own) / double(rays.size()) * f.viewing_rays * pixels;
+  f.rays = best.cost * f.viewing_rays * pixels;
   f.rays_for_cells = f.rays - least_of_pixel(error) * pixels - rays_of_search;
   return f;
 }

@@ -7,6 +7,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 
 #include "gather/gather_records.h"
 #include "transport/costs.h"
@@ -16,11 +18,12 @@
 namespace troffer {
 
 struct PathForecast {
-  double viewing_rays = 0;  // mean per pixel for the asked error
-  double rays = 0;          // rays of all kinds, for the whole picture
-  double evenness = 0;      // of a pixel's paths (PixelSampling::evenness)
-  double proportion = 0;    // PixelSampling::proportion
-  double typical = 0;       // usual luminance of the picture (allowed_error.h)
+  double viewing_rays = 0;     // mean per pixel for the asked error
+  double rays = 0;             // rays of all kinds, for the whole picture
+  double evenness = 0;         // of a pixel's paths (PixelSampling::evenness)
+  double proportion = 0;       // PixelSampling::proportion
+  double typical = 0;          // usual luminance of the picture (allowed_error.h)
+  uint32_t light_samples = 1;  // at first hits (PathOptions::light_samples)
   // Budget for making cells, in rays: `rays` minus the least cost of all other work of a picture by
   // cells. Negative: paths cost less even if cells are free.
   double rays_for_cells = 0;
@@ -29,11 +32,25 @@ struct PathForecast {
   bool is_within(int most) const { return 4 * viewing_rays <= most; }
 };
 
-// Forecasts the cost of a picture. error: allowed in a pixel (allowed_error()). most: limit of
-// viewing rays per pixel. Adds the rays that it traces to `counters`.
-// paths: the integrator whose viewing rays are tested.
-PathForecast forecast_paths(const Integrator& paths, const PictureView& view, double error,
+// Returns the integrator whose viewing rays are tested, with so many light samples at first hits.
+using PathsToTest = std::function<std::unique_ptr<Integrator>(uint32_t light_samples)>;
+
+// Forecasts the cost of a picture with the number of light samples that costs least. error: allowed
+// in a pixel (allowed_error()). most: limit of viewing rays per pixel. Adds the rays that it traces
+// to `counters`.
+PathForecast forecast_paths(const PathsToTest& paths, const PictureView& view, double error,
                             int most, uint64_t seed, Counters& counters);
+
+// Variance and cost of a path.
+struct PathTest {
+  double variance = 0, cost = 0;
+};
+constexpr uint32_t few_light_samples = 4, most_light_samples = 16;
+// Returns the power of two light samples at first hits, up to most_light_samples, with the least
+// variance × cost of a path. The variance is one part that they share and a rest, the cost grows
+// evenly with them: a path with one light sample and one with few_light_samples show both.
+uint32_t cheapest_light_samples(const PathTest& one, const PathTest& few);
+
 // Returns how the pixels of a picture by paths are to be sampled.
 PixelSampling sampling_by_paths(const PathForecast& forecast, double error, int most);
 

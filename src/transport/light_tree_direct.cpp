@@ -11,7 +11,7 @@ void LightTreeDirectScratch::resize(size_t n) {
   receivers.resize(n);
   choices.resize(n);
   points_lit.resize(n);
-  for (auto* a : {&light_u, &light_v, &light_pmf}) a->resize(n);
+  for (auto* a : {&picked_u, &picked_v, &light_u, &light_v, &light_pmf}) a->resize(n);
   points.resize(n);
   is_valid.resize(n);
 }
@@ -20,31 +20,46 @@ std::unique_ptr<DirectLightScratch> LightTreeDirect::make_scratch() const {
   return std::make_unique<LightTreeDirectScratch>();
 }
 
-// Sets lit, primitives, points_lit, light_u, light_v and light_pmf for the hits that have a light.
-// Returns their number.
-size_t LightTreeDirect::choose_lights(const WaveHits& wave, LightTreeDirectScratch& s) const {
-  const size_t n = wave.size();
-  s.streams.resize(n);
-  s.samples.resize(n);
-  s.numbers.resize(3 * n);
-  for (size_t i = 0; i < n; ++i) {
-    s.streams[i] = wave.walks[i].stream;
-    s.samples[i] = wave.walks[i].sample;
+// Lists the hit of each light sample, and the sample's random numbers. The samples of one hit
+// follow each other in the sequence of its pixel.
+void LightTreeDirect::set_hits(const WaveHits& wave, LightTreeDirectScratch& s) const {
+  s.hits.clear();
+  s.streams.clear();
+  s.samples.clear();
+  for (uint32_t i = 0; i < wave.size(); ++i) {
+    const Walk& walk = wave.walks[i];
+    const uint32_t n = samples_after(walk.scatterings);
+    for (uint32_t j = 0; j < n; ++j) {
+      s.hits.push_back(i);
+      s.streams.push_back(walk.stream);
+      s.samples.push_back(walk.sample * n + j);
+    }
   }
-  sobol_groups(s.streams.data(), s.samples.data(), n, purpose_light(wave.walks[0].vertex), 3,
-               s.numbers.data());
+  s.numbers.resize(3 * s.hits.size());
+  sobol_groups(s.streams.data(), s.samples.data(), s.hits.size(),
+               purpose_light(wave.walks[0].vertex), 3, s.numbers.data());
+}
+
+// Sets lit, primitives, points_lit, light_u, light_v and light_pmf for the samples that have a
+// light. Returns their number.
+size_t LightTreeDirect::choose_lights(const WaveHits& wave, LightTreeDirectScratch& s) const {
+  set_hits(wave, s);
+  const size_t n = s.hits.size();
   s.resize(n);
   size_t m = 0;
-  for (uint32_t i = 0; i < n; ++i) {
+  for (size_t k = 0; k < n; ++k) {
+    const uint32_t i = s.hits[k];
     if (is_purely_delta(wave.bsdfs[i])) continue;
     const Vertex& v = wave.vertices[i];
     s.receivers.set(m, v.surface.position, v.geometric_normal, wave.bsdfs[i].has_transmission,
-                    s.numbers[2 * n + i]);
+                    s.numbers[2 * n + k]);
+    s.picked_u[m] = s.numbers[k];
+    s.picked_v[m] = s.numbers[n + k];
     s.lit[m++] = i;
   }
   s.receivers.resize(m);
   scene_.light_tree.choose_many(s.receivers, s.choices.data(), s.tree_scratch);
-  // Compacts the arrays to the hits that have a light.
+  // Compacts the arrays to the samples that have a light.
   size_t kept = 0;
   for (size_t k = 0; k < m; ++k) {
     if (s.choices[k].pmf == 0) continue;
@@ -52,8 +67,8 @@ size_t LightTreeDirect::choose_lights(const WaveHits& wave, LightTreeDirectScrat
     s.lit[kept] = i;
     s.primitives[kept] = s.choices[k].primitive;
     s.points_lit[kept] = wave.vertices[i].surface.position;
-    s.light_u[kept] = s.numbers[i];
-    s.light_v[kept] = s.numbers[n + i];
+    s.light_u[kept] = s.picked_u[k];
+    s.light_v[kept] = s.picked_v[k];
     s.light_pmf[kept] = s.choices[k].pmf;
     ++kept;
   }
@@ -85,11 +100,11 @@ void LightTreeDirect::queue(WaveHits& wave, DirectLightScratch& scratch, Radianc
     const uint32_t i = s.lit[k];
     LightConnection c;
     if (!connect(wave.vertices[i], wave.bsdfs[i], s.points[k], c)) continue;
-    const float pdf_light = c.pdf_light * s.light_pmf[k];
+    const Walk& walk = wave.walks[i];
+    const float pdf_light = c.pdf_light * s.light_pmf[k] * float(samples_after(walk.scatterings));
     if (!wave.continuation_ratio.empty()) c.pdf_bsdf *= wave.continuation_ratio[i];
     const float weight =
         has_competition(wave.bsdfs[i]) ? power_heuristic(pdf_light, c.pdf_bsdf) : 1;
-    const Walk& walk = wave.walks[i];
     s.shadows.add(c.shadow_ray, walk.throughput * c.value * (weight / pdf_light), walk.index,
                   is_direct_at(walk));
   }
@@ -109,16 +124,16 @@ void LightTreeDirect::weigh(SeenEmission& seen) const {
 }
 
 float LightTreeDirect::weight_of_miss(const Walk& walk, uint32_t primitive) const {
-  return miss_weight(
-      scene_, walk, primitive,
-      scene_.light_tree.pmf(walk.last_position, walk.last_normal, walk.last_both_sides, primitive));
+  const float chance =
+      scene_.light_tree.pmf(walk.last_position, walk.last_normal, walk.last_both_sides, primitive);
+  return miss_weight(scene_, walk, primitive, chance * samples_before(walk));
 }
 
 float LightTreeDirect::weight_of(const Walk& walk, const Vertex& v) const {
   const int32_t primitive = primitive_at(scene_, v.surface);
-  return primitive < 0
-             ? 1
-             : emission_weight(scene_, scene_.light_tree, walk, v, uint32_t(primitive), 1);
+  return primitive < 0 ? 1
+                       : emission_weight(scene_, scene_.light_tree, walk, v, uint32_t(primitive),
+                                         samples_before(walk));
 }
 
 }  // namespace troffer

@@ -1,7 +1,7 @@
-// Next-event estimation with a light tree: one shadow ray per hit. The tree picks a light, and a
-// point on it is sampled nearly in proportion to solid angle. The power heuristic combines this
-// with the walk's own direction. Used by path tracing, gather rays and the choice of mirror images.
-// Works in stages over arrays.
+// Next-event estimation with a light tree: one shadow ray per hit, or several at first hits. The
+// tree picks a light, and a point on it is sampled nearly in proportion to solid angle. The power
+// heuristic combines this with the walk's own direction. Used by path tracing, gather rays and the
+// choice of mirror images. Works in stages over arrays.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,11 @@ struct LightTreeDirectScratch final : DirectLightScratch {
   std::vector<uint64_t> streams;
   std::vector<uint32_t> samples;
   std::vector<float> numbers;
-  // Hits that take part, and the point that each is connected with.
+  // Hit of each light sample.
+  std::vector<uint32_t> hits;
+  // Samples that have a light: their hits, and the point that each is connected with.
   std::vector<uint32_t> lit, primitives;
+  std::vector<float> picked_u, picked_v;  // numbers for that point
   LightReceivers receivers;
   std::vector<LightChoice> choices;
   std::vector<float> tree_scratch;
@@ -37,9 +40,12 @@ class LightTreeDirect final : public DirectLight {
   // Surfaces at which walks continue by BSDF sampling and count the emission that they hit: all but
   // Lambertian ones; all, as in path tracing; none. With none, shadow rays bring all light.
   enum class Competition { glossy, all, none };
+  // samples_at_first: light samples at the first surface that scatters, seen straight, in mirrors
+  // or through glass; other hits take one.
   explicit LightTreeDirect(const PreparedScene& scene,
-                           Competition competition = Competition::glossy)
-      : scene_(scene), competition_(competition) {}
+                           Competition competition = Competition::glossy,
+                           uint32_t samples_at_first = 1)
+      : scene_(scene), competition_(competition), samples_at_first_(samples_at_first) {}
 
   std::unique_ptr<DirectLightScratch> make_scratch() const override;
   WalkedPart walked_part() const override { return WalkedPart::whole; }
@@ -55,10 +61,20 @@ class LightTreeDirect final : public DirectLight {
 
  private:
   bool has_competition(const Bsdf& bsdf) const;
+  // Returns the number of light samples at a hit from which a walk has scattered so many times.
+  uint32_t samples_after(uint32_t scatterings) const {
+    return scatterings == 0 ? samples_at_first_ : 1;
+  }
+  // The same for the hit that the walk has left.
+  float samples_before(const Walk& walk) const {
+    return float(samples_after(walk.scatterings - 1));
+  }
+  void set_hits(const WaveHits& wave, LightTreeDirectScratch& s) const;
   size_t choose_lights(const WaveHits& wave, LightTreeDirectScratch& s) const;
 
   const PreparedScene& scene_;
   Competition competition_;
+  uint32_t samples_at_first_;
 };
 
 }  // namespace troffer
