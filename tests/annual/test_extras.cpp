@@ -69,19 +69,19 @@ std::vector<LightPath> path_of(const Scene& scene) {
   return {{static_path, {{"default", std::make_shared<const PreparedScene>(scene)}}}};
 }
 
-struct EyeHours {
+struct HoursOfEyes {
   AnnualResult result;
-  HoursOfSensor hours;
+  std::vector<HoursOfSensor> eyes;
 };
 
-EyeHours look(const Scene& scene, const WeatherYear& year, const MeasuringPoint& eye) {
+HoursOfEyes look(const Scene& scene, const WeatherYear& year,
+                 const std::vector<MeasuringPoint>& eyes) {
   const std::vector<LightPath> paths = path_of(scene);
-  const std::vector<MeasuringPoint> points{eye};
   const Compass compass = north_is_y();
-  HoursOfSensor hours;
+  std::vector<HoursOfSensor> hours(eyes.size());
   AnnualResult result = compute_annual(
-      {paths, points, {}, year, compass, 1}, {}, [&](size_t, const HoursOfSensor& h) { hours = h; },
-      {}, goes_on);
+      {paths, eyes, {}, year, compass, eyes.size()}, {},
+      [&](size_t eye, const HoursOfSensor& h) { hours[eye] = h; }, {}, goes_on);
   return {std::move(result), std::move(hours)};
 }
 
@@ -115,12 +115,12 @@ TEST_CASE("an eye that looks into the sun sees a source of the sun's luminance")
   const WeatherYear year = march_day(600);
   const SunPosition& sun = year.steps[2].sun;
   const Vec3 to_sun(north_is_y().direction(sun.azimuth_deg, sun.altitude_deg));
-  const EyeHours eye = look(open_air(), year, {{0, 0, 0}, to_sun});
+  const HoursOfSensor eye = look(open_air(), year, {{{0, 0, 0}, to_sun}}).eyes[0];
   const PerezSky sky = perez_sky(600, 250, rad_from_deg(90 - sun.altitude_deg), sun.distance_au);
   const double disc = pi * sqr(std::sin(rad_from_deg(sun_angular_radius_deg)));
   const double strength = sqr(sky.direct_lx) / disc;
-  const double ev = double(eye.hours.total[2]);
-  CHECK(double(eye.hours.dgp[2]) == doctest::Approx(hourly_dgp(ev, strength)).epsilon(0.01));
+  const double ev = double(eye.total[2]);
+  CHECK(double(eye.dgp[2]) == doctest::Approx(hourly_dgp(ev, strength)).epsilon(0.01));
   // DGP is at most 1 [1].
   CHECK(hourly_dgp(30000, strength) == 1);
 }
@@ -129,20 +129,21 @@ TEST_CASE("hours of an eye equal pictures rated as troffer glare does") {
   // Haze without sun: the window is the source. Sun from the side: patches of the floor, too.
   for (const double direct_normal : {0.0, 500.0}) {
     const WeatherYear year = march_day(direct_normal);
-    const MeasuringPoint eye{{2, 4, 1.2}, direct_normal > 0 ? Vec3{0, 1, 0} : Vec3{0, -1, 0}};
-    const MeasuringPoint slanted{{2, 3, 1.6},
-                                 normalize(Vec3{0, -1, direct_normal > 0 ? -1.0f : 0})};
-    for (const MeasuringPoint& e : {eye, slanted}) {
-      const EyeHours hours = look(open_room(), year, e);
+    // The second one looks slantwise at patches of sunlight.
+    const std::vector<MeasuringPoint> eyes{
+        {{2, 4, 1.2}, direct_normal > 0 ? Vec3{0, 1, 0} : Vec3{0, -1, 0}},
+        {{2, 3, 1.6}, normalize(Vec3{0, -1, direct_normal > 0 ? -1.0f : 0})}};
+    const HoursOfEyes hours = look(open_room(), year, eyes);
+    for (size_t e = 0; e < eyes.size(); ++e)
       for (const size_t h : {size_t(1), size_t(2)}) {
+        CAPTURE(e);
         CAPTURE(h);
         CAPTURE(direct_normal);
         const DaylightGlare g =
-            rated_picture(open_room(), year.steps[hours.result.skies.steps[h]], e);
-        CHECK(double(hours.hours.total[h]) == doctest::Approx(g.vertical_lx).epsilon(0.04));
-        CHECK(double(hours.hours.dgp[h]) == doctest::Approx(g.dgp).epsilon(0.05));
+            rated_picture(open_room(), year.steps[hours.result.skies.steps[h]], eyes[e]);
+        CHECK(double(hours.eyes[e].total[h]) == doctest::Approx(g.vertical_lx).epsilon(0.04));
+        CHECK(double(hours.eyes[e].dgp[h]) == doctest::Approx(g.dgp).epsilon(0.05));
       }
-    }
   }
 }
 

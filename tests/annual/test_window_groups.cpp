@@ -100,10 +100,11 @@ PathState state_of(const std::string& name, const States& states) {
 }
 
 // Midday and afternoon hours of a March day, with sun and haze.
-WeatherYear sunny_hours() {
+constexpr double last_hour = 17.5;
+WeatherYear sunny_hours(double last = last_hour) {
   WeatherYear year;
   year.latitude_deg = 48;
-  for (double hour = 10.5; hour < 18; hour += 1) {
+  for (double hour = 10.5; hour <= last; hour += 1) {
     WeatherStep& s = year.steps.emplace_back();
     s.month = 3;
     s.day = 21;
@@ -121,12 +122,13 @@ struct YearOfSensors {
   std::vector<HoursOfSensor> sensors;
 };
 
-YearOfSensors run(const std::vector<LightPath>& paths, const std::string& blinds) {
+YearOfSensors run(const std::vector<LightPath>& paths, const std::string& blinds,
+                  double last = last_hour) {
   const std::vector<MeasuringPoint> points{{{2, 2, 0.8}, {0, 0, 1}},
                                            {{3, 1, 0.8}, {0, 0, 1}},
                                            {{1, 3, 1.2}, {0, -1, 0}},
                                            {{2, 3, 1.2}, {-1, 0, 0}}};
-  const WeatherYear year = sunny_hours();
+  const WeatherYear year = sunny_hours(last);
   const Compass compass = make_compass({0, 0, 1}, 0, false);
   AnnualOptions options;
   options.blinds = blinds;
@@ -245,10 +247,8 @@ TEST_CASE("blinds close against the sun of their own window, and a table overrul
   }
   CHECK(is_closed);
   CHECK(is_tinted);
-  std::string rows = "West\n";
-  for (size_t h = 0; h < sunny_hours().steps.size(); ++h) rows += h % 2 == 0 ? "1\n" : "0\n";
-  const TextFile table(".csv", rows);
-  const YearOfSensors by_table = run(two_paths(), table.path());
+  const TextFile table(".csv", "West\n1\n0\n");
+  const YearOfSensors by_table = run(two_paths(), table.path(), 11.5);
   CHECK(by_table.result.schedule.of(1)[1] == 0);
   CHECK(by_table.result.schedule.of(2)[0] == 1);
   CHECK(by_table.result.schedule.of(2)[1] == 0);
