@@ -188,26 +188,32 @@ PathForecast forecast_paths(const PathsToTest& paths, const PictureView& view, d
                             int most, uint64_t seed, Counters& counters) {
   const uint64_t stream = hash_of(seed, stream::path_forecast);
   const ViewingRays rays = sets_of_rays(view, stream);
-  Tested best = test_paths(paths, 1, rays, stream, counters);
-  PathForecast f;
-  f.typical = typical_of(best.tiles);
-  // If so few paths see nothing in most of the picture, the forecast is infinite.
-  f.viewing_rays = std::numeric_limits<double>::infinity();
-  if (f.typical > 0) {
-    Tested few = test_paths(paths, few_light_samples, rays, stream, counters);
-    f.light_samples =
-        cheapest_light_samples(summed(best, error, f.typical), summed(few, error, f.typical));
-    if (f.light_samples == few_light_samples)
-      best = std::move(few);
-    else if (f.light_samples > 1)
-      best = test_paths(paths, f.light_samples, rays, stream, counters);
-    f.evenness = evenness_of(best.tiles, error, f.typical);
-    set_rays(best.tiles, error, most, f);
-  }
   const double pixels = double(view.image.width()) * double(view.image.height());
-  f.rays = best.cost * f.viewing_rays * pixels;
-  f.rays_for_cells = f.rays - least_of_pixel(error) * pixels - rays_of_search;
-  return f;
+  const auto test = [&](uint32_t n) { return test_paths(paths, n, rays, stream, counters); };
+  const Tested one = test(1);
+  PathForecast least;
+  least.typical = typical_of(one.tiles);
+  // If so few paths see nothing in most of the picture, the forecast is infinite.
+  least.viewing_rays = std::numeric_limits<double>::infinity();
+  least.rays = std::numeric_limits<double>::infinity();
+  const auto consider = [&](const Tested& tested, uint32_t light_samples) {
+    PathForecast f;
+    f.typical = least.typical;
+    f.light_samples = light_samples;
+    f.evenness = evenness_of(tested.tiles, error, f.typical);
+    set_rays(tested.tiles, error, most, f);
+    f.rays = tested.cost * f.viewing_rays * pixels;
+    if (f.rays < least.rays) least = f;
+  };
+  if (least.typical > 0) {
+    consider(one, 1);
+    const Tested few = test(few_light_samples);
+    const uint32_t n = cheapest_light_samples(summed(one, error, least.typical),
+                                              summed(few, error, least.typical));
+    if (n > 1) consider(n == few_light_samples ? few : test(n), n);
+  }
+  least.rays_for_cells = least.rays - least_of_pixel(error) * pixels - rays_of_search;
+  return least;
 }
 
 PixelSampling sampling_by_paths(const PathForecast& forecast, double error, int most) {
