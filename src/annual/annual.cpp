@@ -33,7 +33,11 @@ TransportRays rays_of(const AnnualOptions& options, size_t sensors) {
 }
 
 ReflectedOptions reflected_options(const AnnualOptions& options, size_t sensors) {
-  return {rays_of(options, sensors), options.seed, options.threads};
+  ReflectedOptions out;
+  out.rays = rays_of(options, sensors);
+  out.seed = options.seed;
+  out.threads = options.threads;
+  return out;
 }
 
 // Squares of coefficients and of their errors, for AnnualResult::relative_error_reflected.

@@ -109,6 +109,54 @@ std::string grid_plan(const AnnualReport& report, const AnnualGrid& grid,
   return svg_element(f.width, f.height, grid.name, inner) + legend(range, unit, width);
 }
 
+namespace {
+
+// Colour of a level of protection from glare (glare_level()).
+const char* level_colour(const std::string& level) {
+  if (level == "high") return "#2f7d3b";
+  if (level == "medium") return "#8a7a00";
+  return level == "minimum" ? "#b8580a" : "#b3261e";
+}
+
+std::string eye_mark(const EyeYear& eye, const Vec2d& ahead, double x, double y, size_t number) {
+  constexpr double radius = 9, reach = 26;
+  const std::string colour = level_colour(glare_level(eye));
+  const double dx = ahead.x * reach, dy = -ahead.y * reach;
+  return fmt::format("<g stroke=\"{}\" stroke-width=\"3\">{}</g>", colour,
+                     svg_line(x, y, x + dx, y + dy)) +
+         fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>", x, y, radius,
+                     colour) +
+         svg_text(x, y + 4, "middle", fmt::format("{}", number),
+                  "font-size=\"11\" font-weight=\"bold\" fill=\"#fff\"");
+}
+
+}  // namespace
+
+std::string eyes_plan(const AnnualReport& report, double width) {
+  const PlanAxes axes = plan_axes(report.compass.up);
+  std::vector<Vec2d> sensors, all;
+  for (const AnnualGrid& g : report.grids)
+    for (size_t s = g.first; s < g.first + g.count; ++s)
+      sensors.push_back(axes.of(report.points[s].position));
+  all = sensors;
+  for (const EyeYear& e : report.extras.eyes) all.push_back(axes.of(e.eye.position));
+  const double spacing = spacing_of(sensors);
+  const PlanFrame f = frame_of(all, spacing, width);
+  const double side = 0.9 * spacing * f.scale;
+  std::string inner;
+  for (const Vec2d& p : sensors)
+    inner += fmt::format(
+        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"#e4e7eb\"/>",
+        f.x(p) - side / 2, f.y(p) - side / 2, side, side);
+  size_t number = 0;
+  for (const EyeYear& e : report.extras.eyes) {
+    const Vec2d p = axes.of(e.eye.position);
+    inner += eye_mark(e, axes.of(Vec3d(e.eye.normal)), f.x(p), f.y(p), ++number);
+  }
+  inner += north_arrow(axes.of(report.compass.north), f.width - margin_of_compass / 2, 22);
+  return svg_element(f.width, f.height, "Eyes in the plan", inner);
+}
+
 std::string day_hour_map(const AnnualReport& report, std::span<const float> values,
                          const std::string& unit, const ColourRange& range,
                          const std::string& title) {

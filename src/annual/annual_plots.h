@@ -19,6 +19,10 @@ std::string grid_plan(const AnnualReport& report, const AnnualGrid& grid,
                       std::span<const double> values, const std::string& unit,
                       const ColourRange& range, double width);
 
+// Plan of all grids with the eyes: numbered discs in the colour of their level of protection from
+// glare, and a line towards where each looks.
+std::string eyes_plan(const AnnualReport& report, double width);
+
 // Map with days to the right and hours upward. values: one per hour of YearSkies.
 std::string day_hour_map(const AnnualReport& report, std::span<const float> values,
                          const std::string& unit, const ColourRange& range,

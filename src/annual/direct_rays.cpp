@@ -7,12 +7,25 @@
 
 namespace troffer {
 
+namespace {
+
+// Strata per side of a patch: about one per 3 degrees, as patches have by default.
+size_t strata_per_side(const ReinhartSky& sky) {
+  constexpr size_t patches_by_default = 2305;
+  size_t side = 1;
+  while (sky.size() * (side + 1) * (side + 1) <= patches_by_default + sky.size()) ++side;
+  return side;
+}
+
+}  // namespace
+
 DirectRays::DirectRays(const YearOutside& outside, const StateFamily& family, size_t sensor,
                        Parts parts)
     : outside_(outside),
       family_(family),
       sensor_(sensor),
       place_(family.sensors[sensor]),
+      side_(strata_per_side(outside.skies.fine.sky)),
       of_region_(family.regions.size()) {
   if (parts == Parts::all) add_sky();
   first_of_ground_ = rays_.size();
@@ -25,11 +38,13 @@ DirectRays::DirectRays(const YearOutside& outside, const StateFamily& family, si
 void DirectRays::add_sky() {
   Random random(hash_of(outside_.seed, uint64_t(sensor_), stream::annual_direct_sky));
   for (const ReinhartPatch& p : outside_.skies.fine.sky.patches())
-    for (size_t r = 0; r < replicate_count; ++r) {
-      const double u = random.next_double();
-      const Vec3 d = outside_.world(p.direction(u, random.next_double()));
-      add(d, dot(d, place_.normal));
-    }
+    for (size_t i = 0; i < strata(); ++i)
+      for (size_t r = 0; r < replicate_count; ++r) {
+        const double u = (double(i % side_) + random.next_double()) / double(side_);
+        const double v = (double(i / side_) + random.next_double()) / double(side_);
+        const Vec3 d = outside_.world(p.direction(u, v));
+        add(d, dot(d, place_.normal));
+      }
 }
 
 // The ground has uniform luminance: the mirrored coarse patches only stratify it.

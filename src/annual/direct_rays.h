@@ -26,8 +26,9 @@ struct YearOutside {
   }
 };
 
-// One ray per replicate and patch of the fine sky, then of the ground (mirrored patches of the
-// coarse sky), then per hour with sun. Rays of one patch or hour follow each other.
+// Rays to patches of the fine sky: per patch, stratum of it and replicate. Then rays to the ground
+// (mirrored patches of the coarse sky): per patch and replicate. Then per hour with sun and
+// replicate. Rays of one patch or hour follow each other.
 class DirectRays {
  public:
   enum class Parts { all, sun };
@@ -35,6 +36,8 @@ class DirectRays {
   // sensor: number among StateFamily::sensors.
   DirectRays(const YearOutside& outside, const StateFamily& family, size_t sensor, Parts parts);
 
+  // Strata of a patch of the sky. Wide patches have several, so that their edges are as sharp.
+  size_t strata() const { return side_ * side_; }
   size_t first_of_ground() const { return first_of_ground_; }
   size_t first_of_sun() const { return first_of_sun_; }
   // Hours that have rays to the sun.
@@ -64,6 +67,7 @@ class DirectRays {
   const StateFamily& family_;
   size_t sensor_;
   CellHit place_;
+  size_t side_;  // strata per side of a patch
   std::vector<DirectRay> rays_;
   size_t first_of_ground_ = 0, first_of_sun_ = 0;
   std::vector<uint32_t> sun_hours_;

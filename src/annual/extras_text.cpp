@@ -4,6 +4,7 @@
 
 #include "annual/annual_plots.h"
 #include "report/html_text.h"
+#include "report/page_style.h"
 #include "report/page_tables.h"
 
 namespace troffer {
@@ -20,10 +21,12 @@ std::string number_cell(const std::string& text) {
 
 std::string glare_section(const AnnualReport& r) {
   if (r.extras.eyes.empty()) return "";
-  HtmlTable table({"Eye", "Looks towards", "DGP above .35", "above .40", "above .45",
+  HtmlTable table({"Eye", "At", "Looks towards", "DGP above .35", "above .40", "above .45",
                    "Protection from glare, EN 17037"});
+  size_t number = 0;
   for (const EyeYear& e : r.extras.eyes) {
-    std::vector<std::string> row{html_text(place_text(e.eye)),
+    std::vector<std::string> row{number_cell(fmt::format("{}", ++number)),
+                                 html_text(place_text(e.eye)),
                                  html_text(fmt::format("{:.2f}, {:.2f}, {:.2f}", e.eye.normal.x,
                                                        e.eye.normal.y, e.eye.normal.z))};
     for (const double share : e.shares)
@@ -35,11 +38,16 @@ std::string glare_section(const AnnualReport& r) {
       "<h2>Daylight glare</h2><p class=\"sub\">Shares of the occupied hours with a Daylight Glare "
       "Probability above each limit, with blinds as they are operated. EN 17037 asks for at most 5 "
       "%: .45 minimum, .40 medium, .35 high.</p>" +
-      table.html();
+      table.html() + "<figure>" + eyes_plan(r, half_width) +
+      "<figcaption>Eyes on the grids, with the direction in which each looks. Green: high "
+      "protection from glare; olive: medium; orange: minimum; red: none.</figcaption></figure>";
+  number = 0;
   for (const EyeYear& e : r.extras.eyes)
     h += "<figure>" + day_hour_map(r, e.dgp, "", {0.2, 0.5}, "Daylight Glare Probability") +
-         "<figcaption>DGP of the eye at " + html_text(place_text(e.eye)) +
-         ", by day and hour of standard time.</figcaption></figure>";
+         fmt::format(
+             "<figcaption>DGP of eye {} at {}, by day and hour of standard "
+             "time.</figcaption></figure>",
+             ++number, html_text(place_text(e.eye)));
   return h;
 }
 

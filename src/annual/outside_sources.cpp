@@ -20,8 +20,8 @@ constexpr double blurred_radius = rad_from_deg(5);
 
 }  // namespace
 
-OutsideSources::OutsideSources(const Compass& compass, std::span<const Vec3d> suns)
-    : compass_(compass) {
+OutsideSources::OutsideSources(const Compass& compass, std::span<const Vec3d> suns, int subdivision)
+    : compass_(compass), sky_(subdivision) {
   for (const Vec3d& s : suns) suns_.push_back(world(s));
 }
 

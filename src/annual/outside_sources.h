@@ -25,7 +25,8 @@ struct OutsideSample {
 // Patches (unit: 1 cd/m²), then the ground (1 cd/m²), then suns (1 lx on a plane facing them).
 class OutsideSources {
  public:
-  OutsideSources(const Compass& compass, std::span<const Vec3d> suns);
+  OutsideSources(const Compass& compass, std::span<const Vec3d> suns,
+                 int subdivision = reflected_subdivision);
 
   size_t size() const { return sky_.size() + 1 + suns_.size(); }
   size_t ground() const { return sky_.size(); }
@@ -48,7 +49,7 @@ class OutsideSources {
   }
 
   Compass compass_;
-  ReinhartSky sky_{reflected_subdivision};
+  ReinhartSky sky_;
   std::vector<Vec3> suns_;
 };
 

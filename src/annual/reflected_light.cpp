@@ -21,7 +21,7 @@ class ReplicateWork {
         seed_(hash_of(options.seed, uint64_t(replicate), stream::annual_replicates)),
         stop_(stop),
         suns_(suns_of(year)),
-        sources_(compass, suns_->nodes()) {}
+        sources_(compass, suns_->nodes(), options.subdivision) {}
 
   // Computes the replicate of all states that need it. Returns false once `stop` is set.
   bool compute(const ProgressCallback& progress) {

@@ -52,7 +52,8 @@ struct ReflectedOptions {
   TransportRays rays;
   uint64_t seed = 0;
   int threads = 0;
-  ReplicateKeeper* keeper = nullptr;  // may be null
+  int subdivision = reflected_subdivision;  // of the sky; another one only in benchmarks
+  ReplicateKeeper* keeper = nullptr;        // may be null
 };
 
 // Computes all replicates of the states of a family, state by state. Returns fewer of each once

@@ -75,16 +75,18 @@ double SensorHours::cosine_over(const ReinhartPatch& p) const {
 // A patch that all rays see unhindered brings its exact share.
 void SensorHours::add_sky(const DirectRays& rays, std::span<const float> open) {
   const PatchHours& fine = light_.outside.skies.fine;
+  const size_t n = rays.strata() * replicate_count;
   for (size_t p = 0; p < fine.sky.size(); ++p) {
-    const std::span<const float> of_patch = open.subspan(p * replicate_count, replicate_count);
+    const std::span<const float> of_patch = open.subspan(p * n, n);
     if (std::all_of(of_patch.begin(), of_patch.end(), [](float o) { return o == 0; })) continue;
     const ReinhartPatch& patch = fine.sky.patches()[p];
     std::array<float, replicate_count> c{};
     if (std::all_of(of_patch.begin(), of_patch.end(), [](float o) { return o > 0.99999f; }))
       c.fill(float(cosine_over(patch)));
     else
-      for (size_t r = 0; r < replicate_count; ++r)
-        c[r] = of_patch[r] * rays.cosine(p * replicate_count + r) * float(patch.solid_angle);
+      for (size_t i = 0; i < n; ++i)
+        c[i % replicate_count] +=
+            of_patch[i] * rays.cosine(p * n + i) * float(patch.solid_angle / double(rays.strata()));
     add(fine.of(p, light_.outside.skies.hours()).data(), c);
   }
 }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "annual/stored_eyes.h"
 #include "annual/stored_year.h"
 
 namespace troffer {
@@ -25,8 +26,11 @@ constexpr int by_schedule = -1;
 // a time. Throws InputError if a file is gone or has become shorter.
 class StoredHours {
  public:
-  explicit StoredHours(StoredYear year) : year_(std::move(year)) {}
+  // Also reads the eyes of the folder, and throws as read_stored_eyes() does.
+  explicit StoredHours(StoredYear year)
+      : year_(std::move(year)), eyes_(read_stored_eyes(year_.folder, year_.hours)) {}
   const StoredYear& year() const { return year_; }
+  const std::vector<StoredEye>& eyes() const { return eyes_; }
 
   // Throws UsageError for hours and states that do not exist.
   std::vector<float> all_sensors(size_t hour, StoredPart part, const StoredStates& states);
@@ -42,6 +46,7 @@ class StoredHours {
   std::span<const float> column(size_t state, StoredPart part, size_t hour);
 
   const StoredYear year_;
+  const std::vector<StoredEye> eyes_;
   std::map<Block, std::vector<float>> blocks_;  // columns of hours
   size_t kept_ = 0;                             // numbers in all blocks
 };

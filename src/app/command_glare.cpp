@@ -69,6 +69,11 @@ Image luminances_of(const Image& picture, bool is_photometric) {
   return out;
 }
 
+// Converts a picture in cd/m² to W/(m² sr), in which pictures are written and read.
+void make_radiometric(Image& picture) {
+  for (Rgb& p : picture.pixels) p *= float(1 / luminous_efficacy);
+}
+
 Json json_of(const DaylightGlare& g) {
   Json j{{"dgp", g.dgp},
          {"dgi", g.dgi},
@@ -202,12 +207,14 @@ int run_glare(GlareCommand c) {
     fmt::print(stderr, "interrupted: the view is not rated\n");
     return exit_interrupted;
   }
+  const Image luminances = luminances_of(result.layers[0].image, scene.scene.is_photometric);
   if (!c.output.empty()) {
+    if (scene.scene.is_photometric) make_radiometric(result.layers[0].image);
     OutputSet files;
     files.add(c.output, result.layers, WriteOptions());
     files.commit();
   }
-  return tell(c, luminances_of(result.layers[0].image, scene.scene.is_photometric));
+  return tell(c, luminances);
 }
 
 }  // namespace troffer

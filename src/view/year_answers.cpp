@@ -82,6 +82,7 @@ YearAnswers::YearAnswers(std::shared_ptr<StoredHours> year, const Boxd& bounds,
 HttpResponse YearAnswers::answer(const HttpRequest& r) {
   if (r.path == "year") return description();
   if (r.path == "year/points") return positions();
+  if (r.path == "year/glare") return glare();
   const bool is_hour = r.path == "year/hour";
   if (!is_hour && r.path != "year/sensor") throw UsageError("there is no such answer of the year");
   const StoredPart part = parse_part(r.value("part"));
@@ -113,7 +114,20 @@ HttpResponse YearAnswers::description() const {
   j["grids"] = YearJson::array();
   for (const StoredGrid& g : y.grids)
     j["grids"].push_back({{"name", g.name}, {"first", g.first}, {"count", g.count}});
+  j["eyes"] = YearJson::array();
+  for (const StoredEye& e : hours_->eyes()) {
+    const Vec3d &p = e.eye.position, d(e.eye.normal);
+    j["eyes"].push_back({{"position", {p.x, p.y, p.z}}, {"direction", {d.x, d.y, d.z}}});
+  }
   return {200, "application/json", text_of_json(j), ""};
+}
+
+HttpResponse YearAnswers::glare() const {
+  std::vector<float> all;
+  for (const StoredEye& e : hours_->eyes())
+    for (const std::vector<float>* v : {&e.dgp, &e.vertical_lx})
+      all.insert(all.end(), v->begin(), v->end());
+  return numbers_response(all);
 }
 
 HttpResponse YearAnswers::positions() const {

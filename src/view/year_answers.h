@@ -23,7 +23,8 @@ class YearAnswers {
   const std::vector<MeasuringPoint>& points() const { return hours_->year().points; }
 
   // "year" describes sensors, hours and window groups, as JSON. "year/points" returns six doubles
-  // per sensor: position and normal. "year/hour" returns all sensors in one hour, "year/sensor" all
+  // per sensor: position and normal. "year/glare" returns, eye by eye, the DGP of all hours and
+  // then the illuminance at the eye. "year/hour" returns all sensors in one hour, "year/sensor" all
   // hours of one sensor, followed by their standard errors if these are known. Throws UsageError
   // for other requests, and InputError if files have changed.
   HttpResponse answer(const HttpRequest& request);
@@ -31,6 +32,7 @@ class YearAnswers {
  private:
   HttpResponse description() const;
   HttpResponse positions() const;
+  HttpResponse glare() const;
 
   std::shared_ptr<StoredHours> hours_;
   std::vector<std::string> notes_;

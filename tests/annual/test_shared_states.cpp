@@ -149,9 +149,16 @@ void compare_with_state_alone(const std::vector<LightPath>& paths, const StatesR
   const Exposure alone = exposure_of(run({{static_path, {group.states[0]}}}, 2));
   CAPTURE(together.mean);
   CAPTURE(alone.mean);
+  // Closed slats are the noisiest state: 5.73 klx h, mean of 24 runs, of which one deviates by 2.3
+  // %. The error of a run, estimated from eight replicates, is 0.7 to 2.7 %.
   const double error = std::sqrt(together.variance + alone.variance);
-  CHECK(error < 0.1 * alone.mean);
+  CHECK(error < 0.05 * alone.mean);
   CHECK(std::abs(together.mean - alone.mean) < 3.5 * error);
+  if (path == 1 && state == 1) {
+    constexpr double converged = 5.73, deviation = 0.14;  // of one run
+    for (const double mean : {together.mean, alone.mean})
+      CHECK(std::abs(mean - converged) < 3.5 * deviation);
+  }
   // Other groups make no difference at all.
   for (size_t s = 0; s < points.size(); ++s) {
     CHECK(shared.sensors[s].states[1].total == all.sensors[s].states[2 * path - 1 + state].total);

@@ -158,4 +158,19 @@ TEST_CASE("glare rates a view of a bright square") {
   CHECK(run_program(folder, {"glare", folder.path("s.rad"), "--quiet"}).status == 2);
 }
 
+// Scenes of glTF are photometric. Their pictures are written in W/(m² sr) all the same.
+TEST_CASE("the written picture of a photometric scene is rated as the view is") {
+  const Folder folder;
+  const std::string office = std::string(TROFFER_SOURCE_DIR) + "/scenes/year-office/office.glb";
+  const Finished live =
+      run_program(folder, {"glare", office, "--eye", "3,1.2,-4", "--target", "3,1.2,0", "--width",
+                           "96", "--json", "--quiet", "-o", folder.path("office.hdr")});
+  REQUIRE(live.status == 0);
+  const Finished file = run_program(folder, {"glare", folder.path("office.hdr"), "--json"});
+  REQUIRE(file.status == 0);
+  for (const char* figure : {"dgp", "vertical_illuminance_lx"})
+    CHECK(nlohmann::json::parse(file.out)[figure].get<double>() ==
+          doctest::Approx(nlohmann::json::parse(live.out)[figure].get<double>()).epsilon(0.01));
+}
+
 }  // namespace test_facade_command

@@ -345,12 +345,14 @@ def check_year(program, browser, folder):
     weather, year = os.path.join(folder, "test.wea"), os.path.join(folder, "year")
     write_weather(weather)
     subprocess.run([os.path.abspath(program), "annual", "office.glb", "--weather", weather, "-o", year, "--grid", "Floor,0.8,1",
-                    "--border", "0.5", "--groups", "groups.json", "--subdivision", "1", "--gather-rays", "64",
+                    "--border", "0.5", "--groups", "groups.json", "--eyes", "eyes.csv", "--subdivision", "1", "--gather-rays", "64",
                     "--quiet"], cwd=scene, check=True)
     page = Page(program, [os.path.join(scene, "office.glb"), "--annual", year, "--size", "160x120", "--error",
                           "0.5", "--at", "48,0,2026-06-21T08:00+00:00", "--quiet"], browser)
     page.wait("window.year && year.values && year.seen")
     assert page.js("document.getElementById('year-note').hidden")
+    with open(os.path.join(year, "glare.csv")) as file:
+        glare = [[float(v) for v in line.split(",")] for line in file.read().split("\n")[1:] if line]
     count, when = page.js("year.sensors.length"), page.js("document.getElementById('year-when').textContent")
     assert when == "21 March, 12:30", when
     arrays = {(state, part): array_of(os.path.join(year, "honeybee/South", f"{state}_South", part, "Floor.npy"), count)
@@ -380,6 +382,12 @@ def check_year(program, browser, folder):
     page.set("year-through", True)
     assert page.js("year.marks.length") == count
     page.screenshot("year")
+    hour = page.js("year.hour")
+    eyes = page.js("year.eyes.all.map((e) => { const g = year.eyes.glareOf(e); return [g.lx, g.dgp]; })")
+    assert len(eyes) == 3
+    for k, (lx, dgp) in enumerate(eyes):
+        assert abs(lx - glare[hour][2 * k + 1]) <= 1e-4 * lx and abs(dgp - glare[hour][2 * k + 2]) < 1e-4
+    assert f"DGP {eyes[0][1]:.2f}" in page.js("document.getElementById('year-eyes').innerText")
     # Sliders, keys, groups, and direct light. The picture follows if asked to.
     page.set("year-follow", True)
     page.set("year-step", "9")

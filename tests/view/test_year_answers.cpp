@@ -1,6 +1,8 @@
 // The server's answers on a year of daylight, against the arrays in its folder.
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include <cstring>
 
 #include "../annual/stored_folder.h"
@@ -51,6 +53,31 @@ TEST_CASE("the year's description has hours, grids and groups with their schedul
   REQUIRE(places.size() == 30);
   CHECK(places[24] == 4);
   CHECK(places[29] == 1);
+}
+
+TEST_CASE("eyes come with their glare in all hours") {
+  const StoredFolder folder;
+  const auto described = [&] {
+    return nlohmann::json::parse(answers_of(folder).answer(year_request("year")).body);
+  };
+  CHECK(described()["eyes"].empty());
+  CHECK(answers_of(folder).answer(year_request("year/glare")).body.empty());
+  folder.write("annual.json", R"({"scene": "rooms/two.gltf", "weather": {"place": "Nowhere"},
+    "window_groups": [{"name": "South", "states": [{"name": "up"}, {"name": "down"}]}],
+    "eyes": [{"x": 1, "y": 0.5, "z": 1.2, "direction": [0, -1, 0]}]})");
+  std::string table = "hour_of_year,vertical_lx_1,dgp_1\n";
+  for (int h = 0; h < 48; ++h)
+    if (h % 24 >= 8 && h % 24 < 16) table += fmt::format("{},{},{}\n", h + 0.5, 10 * h, 0.01 * h);
+  folder.write("glare.csv", table);
+  const auto j = described();
+  REQUIRE(j["eyes"].size() == 1);
+  CHECK(j["eyes"][0]["position"][1] == 0.5);
+  CHECK(j["eyes"][0]["direction"][1] == -1);
+  YearAnswers answers = answers_of(folder);
+  const auto glare = numbers_in<float>(answers.answer(year_request("year/glare")));
+  REQUIRE(glare.size() == 2 * StoredFolder::hours);
+  CHECK(glare[1] == doctest::Approx(0.09));
+  CHECK(glare[StoredFolder::hours + 15] == 390);
 }
 
 TEST_CASE("answers on hours and sensors equal the arrays") {

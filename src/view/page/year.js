@@ -10,6 +10,7 @@ class YearOfDaylight {
   // get(path): JSON. numbers(path): a buffer. changed(): redraws the picture's marks.
   constructor(get, numbers, changed) {
     Object.assign(this, {get, numbers, changed});
+    this.eyes = new YearEyes(this);
     this.about = null;  // description by the program
     this.values = null;  // of all sensors in the hour shown, lx
     this.kept = new Map();  // values of hours by request
@@ -31,6 +32,7 @@ class YearOfDaylight {
     // Index of each step's hour among the hours with the sun up.
     this.hourOfStep = new Map(about.hours.map((h, i) => [Math.round(h * about.steps_per_hour - 0.5), i]));
     this.states = about.groups.map(() => -1);
+    await this.eyes.begin(about, this.numbers);
     this.about = about;
     // The first view is noon on 21 March, or the first hour of a shorter period.
     const first = Math.floor(about.hours[0] * about.steps_per_hour);
@@ -186,6 +188,7 @@ class YearOfDaylight {
       g.fill();
       g.globalAlpha = 1;
     }
+    this.eyes.draw(g, toScreen, labels);
     this.label(g, labels, pointed);
   }
   label(g, labels, pointed) {

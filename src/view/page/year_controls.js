@@ -56,6 +56,7 @@ function showYear() {
   $('year-figures').textContent = year.failure ? year.failure : isDark ? 'No daylight at this hour.' : !s ? 'Loading …'
     : `mean ${yearLx(s.mean)} lx, minimum ${yearLx(s.least)}, maximum ${yearLx(s.most)}; ${Math.round(100 * s.share)} % of sensors from 300 lx on`;
   $('year-hidden').hidden = !isHidden;
+  year.eyes.show($('year-eyes'));
   drawLegend($('year-legend'), mostOfYear(), $('year-log').checked, 'lx');
   showSensor();
 }
