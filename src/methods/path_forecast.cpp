@@ -29,6 +29,9 @@ double least_of_pixel(double error) {
 // Limits of the number of first rays of a pixel. They estimate its noise, for which fewer are too
 // few.
 constexpr int least_first = 8, most_first = 64;
+// Other numbers of light samples are tested only for pictures that cost this many times the test
+// paths, which then cost little.
+constexpr double fewest_tests = 16;
 constexpr int tiles_across = 8;  // test pixels are grouped by 8 × 8 parts of the picture
 
 // Returns the place of test pixel i in the unit square that stands for the picture.
@@ -205,8 +208,9 @@ PathForecast forecast_paths(const PathsToTest& paths, const PictureView& view, d
     f.rays = tested.cost * f.viewing_rays * pixels;
     if (f.rays < least.rays) least = f;
   };
-  if (least.typical > 0) {
-    consider(one, 1);
+  if (least.typical > 0) consider(one, 1);
+  const double tested = one.cost * double(rays.size());
+  if (least.rays > fewest_tests * tested && std::isfinite(least.rays)) {
     const Tested few = test(few_light_samples);
     const uint32_t n = cheapest_light_samples(summed(one, error, least.typical),
                                               summed(few, error, least.typical));
