@@ -149,8 +149,8 @@ void compare_with_state_alone(const std::vector<LightPath>& paths, const StatesR
   const Exposure alone = exposure_of(run({{static_path, {group.states[0]}}}, 2));
   CAPTURE(together.mean);
   CAPTURE(alone.mean);
-  // Closed slats are the noisiest state: 5.73 klx h, mean of 24 runs, of which one deviates by 2.3
-  // %. The error of a run, estimated from eight replicates, is 0.7 to 2.7 %.
+  // Closed slats are the noisiest state: 5.73 klx h as the mean of 24 runs, with a deviation of
+  // 2.4 % of one run. Errors estimated from the eight replicates of a run are 0.7 to 2.7 %.
   const double error = std::sqrt(together.variance + alone.variance);
   CHECK(error < 0.05 * alone.mean);
   CHECK(std::abs(together.mean - alone.mean) < 3.5 * error);
