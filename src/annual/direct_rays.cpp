@@ -17,6 +17,14 @@ size_t strata_per_side(const ReinhartSky& sky) {
   return side;
 }
 
+// A point of the unit square in one of as many strata as there are replicates.
+Vec2 in_stratum(size_t stratum, const Vec2& number) {
+  constexpr size_t columns = 4, rows = 2;
+  static_assert(columns * rows == size_t(replicate_count));
+  return {(float(stratum % columns) + number.x) / float(columns),
+          (float(stratum / columns) + number.y) / float(rows)};
+}
+
 }  // namespace
 
 DirectRays::DirectRays(const YearOutside& outside, const StateFamily& family, size_t sensor,
@@ -59,7 +67,9 @@ void DirectRays::add_ground() {
     }
 }
 
-// Rays to points of the sun's disc. All rays of an hour have the cosine of its middle.
+// Rays to points of the sun's disc. All rays of an hour have the cosine of its middle. Each
+// replicate has another stratum of the disc, so that all rays miss an edge of the sun only where it
+// cuts off less than a stratum. A replicate's strata of different hours are independent.
 void DirectRays::add_sun() {
   Random random(hash_of(outside_.seed, uint64_t(sensor_), stream::annual_direct_sun));
   const YearSkies& skies = outside_.skies;
@@ -69,8 +79,10 @@ void DirectRays::add_sun() {
     const float cosine = dot(to_sun, place_.normal);
     if (cosine <= 0) continue;
     sun_hours_.push_back(h);
+    const size_t shift = random.next_u32() % replicate_count;
     for (size_t r = 0; r < replicate_count; ++r)
-      add(within_sun(to_sun, random.next_vec2()), cosine);
+      add(within_sun(to_sun, in_stratum((r + shift) % replicate_count, random.next_vec2())),
+          cosine);
   }
 }
 
