@@ -17,9 +17,10 @@ size_t strata_per_side(const ReinhartSky& sky) {
   return side;
 }
 
-// A point of the unit square in one of as many strata as there are replicates.
+// A point of the unit square in one of as many strata as there are replicates: for the sun, two
+// rings of four sectors. Of such divisions, edges of the disc pass this one unseen most seldom.
 Vec2 in_stratum(size_t stratum, const Vec2& number) {
-  constexpr size_t columns = 4, rows = 2;
+  constexpr size_t columns = 2, rows = 4;
   static_assert(columns * rows == size_t(replicate_count));
   return {(float(stratum % columns) + number.x) / float(columns),
           (float(stratum / columns) + number.y) / float(rows)};
