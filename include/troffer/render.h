@@ -63,7 +63,7 @@ struct RenderStatistics {
   double build_seconds = 0;             ///< ray tracer and light trees; 0 if they existed
   double preprocess_seconds = 0;        ///< spent on radiosity
   double render_seconds = 0;            ///< spent on everything that follows
-  double estimated_error = 0;           ///< RMS standard error of pixels over mean luminance
+  double estimated_error = 0;           ///< RMS standard error of pixels over mean luminance as shown
   double viewing_error = 0;             ///< the same, from the spread of viewing rays
   double share_above = 0;               ///< share of pixels whose standard error exceeds 1 %
   double share_done = 0;                ///< share of the work that was done

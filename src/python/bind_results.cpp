@@ -87,7 +87,7 @@ void bind_picture(py::module_& m) {
       .def_property_readonly(
           "error", [](const api::Picture& p) { return p.statistics().estimated_error; },
           "Estimated error of the picture: root mean square of the pixels' standard errors, "
-          "divided by the mean luminance.")
+          "divided by the mean luminance, as a display shows the picture.")
       .def_property_readonly("is_complete", &api::Picture::is_complete,
                              "False after a stop or a time limit.")
       .def_property_readonly(

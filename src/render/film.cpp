@@ -6,6 +6,7 @@
 
 #include "base/ablation.h"
 #include "render/aov_rows.h"
+#include "transport/allowed_error.h"
 
 namespace troffer {
 
@@ -339,21 +340,27 @@ std::vector<Layer> Film::layers() const {
 }
 
 double picture_error(const Film& film, const PixelRect& window) {
-  constexpr double bright = 4;  // times the mean: what a display or a tone map shows as white
-  const double pixels = double(window.width()) * window.height();
-  const auto sum_of = [&](const auto& value) {
-    double sum = 0;
-    for (int y = window.y0; y < window.y1; ++y)
-      for (int x = window.x0; x < window.x1; ++x) sum += value(x, y);
-    return sum;
-  };
-  const double mean = sum_of([&](int x, int y) { return film.estimate(x, y).luminance; }) / pixels;
-  if (!(mean > 0)) return 0;
-  const double squares = sum_of([&](int x, int y) {
-    const double l = film.estimate(x, y).luminance;
-    return sqr(film.estimated_error(x, y) * std::min(1.0, bright * mean / std::max(l, 1e-30)));
-  });
-  return std::sqrt(squares / pixels) / mean;
+  std::vector<double> luminances, errors;
+  for (int y = window.y0; y < window.y1; ++y)
+    for (int x = window.x0; x < window.x1; ++x) {
+      luminances.push_back(film.estimate(x, y).luminance);
+      errors.push_back(film.estimated_error(x, y));
+    }
+  return picture_error(luminances, errors);
+}
+
+double picture_error(const std::vector<double>& luminances, const std::vector<double>& errors) {
+  const double usual = usual_luminance(luminances);
+  // A picture that is dark but for a twentieth has no usual luminance.
+  const double white =
+      usual > 0 ? white_luminance * usual : *std::max_element(luminances.begin(), luminances.end());
+  if (!(white > 0)) return 0;
+  double sum = 0, squares = 0;
+  for (size_t i = 0; i < luminances.size(); ++i) {
+    sum += std::min(luminances[i], white);
+    squares += sqr(errors[i] * std::min(1.0, white / std::max(luminances[i], 1e-30)));
+  }
+  return std::sqrt(squares * double(luminances.size())) / sum;
 }
 
 }  // namespace troffer

@@ -163,9 +163,12 @@ class Film {
   std::vector<Known> known_;          // empty unless expect_surrogates() was called
 };
 
-// Returns the estimated error of a picture: root mean square of its pixels' errors over its mean
-// luminance. The error of a pixel brighter than four times the mean counts relative to its own
-// luminance, as if it had four times the mean.
+// Returns the estimated error of a picture as a display shows it: root mean square of its pixels'
+// errors over its mean luminance, where all luminances from four times the usual one on are white
+// (allowed_error.h). Otherwise a lamp in view would make all errors seem small. The error of a
+// pixel brighter than white counts relative to its own luminance, as if it were just white.
 double picture_error(const Film& film, const PixelRect& window);
+// The same for pixels with these luminances and errors. There is at least one.
+double picture_error(const std::vector<double>& luminances, const std::vector<double>& errors);
 
 }  // namespace troffer

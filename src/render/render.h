@@ -110,7 +110,8 @@ struct RenderStatistics {
   Counters counters;     // work of viewing rays
   Counters preparation;  // work of cells, gathers and forecasts; this process's share
   ViewingErrors viewing_errors;
-  // Root mean square of layer `error` over the picture's mean luminance.
+  // Root mean square of layer `error` over the mean luminance, as a display shows the picture:
+  // picture_error() in film.h.
   double estimated_error = 0;
   double share_done = 0;        // share of the work, counted in tiles
   size_t gaps_filled = 0;       // pixels that a time limit left to GapFiller

@@ -18,19 +18,22 @@ inline double usual_luminance(std::vector<double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
 }
 
+// Luminance, in typical ones, from which on a display or a tone map shows white.
+constexpr double white_luminance = 4;
+
 // Returns the error allowed to a pixel of this luminance. `error` is the relative error asked for,
 // `typical` the typical luminance of the picture. Pixels darker than `typical` may have the error
 // of a typical one. Brighter pixels are judged relative to their own luminance, as a display or a
-// tone map shows them, but at most to four times the typical one: what is brighter is shown white,
-// and the pixels at its outline are not.
+// tone map shows them, but at most to white: the pixels at the outline of what is brighter are not
+// white.
 inline double allowed_error(double error, double luminance, double typical) {
-  constexpr double white = 4;  // times the typical luminance
-  return error * (typical > 0 ? std::clamp(luminance, typical, white * typical) : luminance);
+  return error *
+         (typical > 0 ? std::clamp(luminance, typical, white_luminance * typical) : luminance);
 }
 
-// Above the square of this, the number of a pixel's further samples is in proportion to the standard
-// deviation instead of the variance, where every pixel has its own limit of error: a few very noisy
-// pixels do not repay the samples that they would need.
+// Above the square of this, the number of a pixel's further samples is in proportion to the
+// standard deviation instead of the variance, where every pixel has its own limit of error: a few
+// very noisy pixels do not repay the samples that they would need.
 constexpr double most_even_samples = 6;
 
 // Allocation of samples. A pixel alone takes `wanted` samples to reach its allowed error; the

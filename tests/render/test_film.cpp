@@ -119,6 +119,27 @@ double independent_error_of(const std::vector<float>& values) {
   return m.standard_error();
 }
 
+TEST_CASE("the error of a picture does not depend on how bright a lamp in view is") {
+  std::vector<double> luminances(100, 1), errors(100, 0.1);
+  CHECK(picture_error(luminances, errors) == doctest::Approx(0.1));
+  // A lamp of one pixel, which is white: four times the usual luminance of 1.
+  for (const double lamp : {10.0, 1000.0, 1e6}) {
+    luminances[50] = lamp;
+    errors[50] = 0;
+    CHECK(picture_error(luminances, errors) ==
+          doctest::Approx(std::sqrt(99 * 0.01 * 100) / (99 + 4)));
+    errors[50] = 0.1 * lamp;  // as if of white
+    CHECK(picture_error(luminances, errors) ==
+          doctest::Approx(std::sqrt((99 * 0.01 + 0.16) * 100) / (99 + 4)));
+  }
+  // Nothing but the lamp.
+  for (size_t i = 0; i < luminances.size(); ++i)
+    if (i != 50) luminances[i] = errors[i] = 0;
+  CHECK(picture_error(luminances, errors) == doctest::Approx(1));
+  luminances[50] = 0;
+  CHECK(picture_error(luminances, errors) == 0);
+}
+
 }  // namespace
 
 TEST_CASE("the spread of samples within pixels is reported for whole pictures") {
