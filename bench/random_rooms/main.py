@@ -12,7 +12,7 @@ import numpy as np
 
 import generate
 
-clamp = 4  # times the mean
+clamp = 4  # times the mean without the brightest twentieth
 alike = 9  # pixels whose errors count as one in a mean: neighbours share gathers and fits
 worst_pixels = 4  # that get a reference of their own
 worst_samples = 16384  # of each half of it
@@ -106,11 +106,18 @@ class Reference:
                 half[y, x] = more.luminance[0, 0]
 
     @property
+    def white(self):
+        """Luminance from which on a display shows white, as the program's estimated error has it."""
+        values = np.sort((self.a + self.b).ravel() / 2)
+        return clamp * values[:values.size - values.size // 20].mean() or values[-1]
+
+    @property
     def mean(self):
-        return (self.a + self.b).mean() / 2
+        """Mean luminance as a display shows it."""
+        return self.limited((self.a + self.b) / 2).mean()
 
     def limited(self, x):
-        return np.minimum(x, clamp * self.mean)
+        return np.minimum(x, self.white)
 
     def own_error(self):
         return ((self.limited(self.a) - self.limited(self.b)) ** 2).mean() ** 0.5 / 2 / self.mean
