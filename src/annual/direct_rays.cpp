@@ -11,7 +11,7 @@ namespace {
 
 // Strata per side of a patch: about one per 3 degrees, as patches have by default.
 size_t strata_per_side(const ReinhartSky& sky) {
-  constexpr size_t patches_by_default = 2305;
+  constexpr size_t patches_by_default = 2305;  // ReinhartSky(4): AnnualOptions
   size_t side = 1;
   while (sky.size() * (side + 1) * (side + 1) <= patches_by_default + sky.size()) ++side;
   return side;

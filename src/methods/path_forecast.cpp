@@ -30,7 +30,7 @@ double least_of_pixel(double error) {
 // few.
 constexpr int least_first = 8, most_first = 64;
 // Other numbers of light samples are tested only for pictures that cost this many times the test
-// paths, which then cost little.
+// paths. By judgement: the tests are then a small part of the work.
 constexpr double fewest_tests = 16;
 constexpr int tiles_across = 8;  // test pixels are grouped by 8 × 8 parts of the picture
 
@@ -148,7 +148,7 @@ void set_rays(const std::vector<Tile>& tiles, double error, int most, PathForeca
   f.viewing_rays = std::max(sum / double(wanted.size()), double(least_first));
 }
 
-// What test paths with one number of light samples show.
+// Results of test paths that all take the same number of light samples.
 struct Tested {
   std::vector<Tile> tiles;
   double cost = 0;  // of a path

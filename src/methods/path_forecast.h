@@ -45,6 +45,8 @@ PathForecast forecast_paths(const PathsToTest& paths, const PictureView& view, d
 struct PathTest {
   double variance = 0, cost = 0;
 };
+// Both by judgement: four is far from one, and eight was the largest number chosen in public scenes
+// (docs/log/results.md).
 constexpr uint32_t few_light_samples = 4, most_light_samples = 16;
 // Returns the power of two light samples at first hits, up to most_light_samples, with the least
 // variance × cost of a path. The variance is one part that they share and a rest, the cost grows

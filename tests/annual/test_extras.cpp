@@ -137,7 +137,7 @@ TEST_CASE("sensors that see a part of the sun know that they do") {
   double sum = 0, expected = 0;
   for (size_t i = 0; i < sensors.size(); ++i) {
     CAPTURE(shares[i]);
-    // Of eight independent rays, all would agree at one or two in a hundred of these sensors.
+    // Eight independent rays would all agree at one or two in a hundred of these sensors.
     CHECK(double(hours.eyes[i].error[hour]) > 0.1 * whole);
     CHECK(double(hours.eyes[i].sun[hour]) > 0.1 * whole);
     CHECK(double(hours.eyes[i].sun[hour]) < 0.9 * whole);
