@@ -30,7 +30,8 @@ nlohmann::ordered_json plan_json(const MethodPlan& plan) {
     j["parts"].push_back({{"part", p.part}, {"choice", p.choice}, {"reason", p.reason}});
   if (plan.forecast)
     j["forecast"] = {{"paths_per_pixel", plan.forecast->viewing_rays},
-                     {"light_samples", plan.forecast->light_samples},
+                     {"light_samples", plan.forecast->lights.samples_at_first},
+                     {"learned_lights", plan.forecast->lights.learned != nullptr},
                      {"rays_by_paths", plan.forecast->rays},
                      {"rays_for_cells", plan.forecast->rays_for_cells}};
   return j;

@@ -18,6 +18,7 @@ inline constexpr uint64_t further_test = 0x6675'7274;
 inline constexpr uint64_t further_like_first = 0x6675'7266'0000'0000;  // + an index under 2^32
 inline constexpr uint64_t typical_luminance = 0x7479'7069;
 inline constexpr uint64_t path_forecast = 0x7061'7468;
+inline constexpr uint64_t learned_lights = 0x6c65'6172;
 inline constexpr uint64_t gather_trial = 0x7472'6961;
 inline constexpr uint64_t outline_check = 0x6f75'746c;
 

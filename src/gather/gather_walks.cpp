@@ -105,11 +105,11 @@ void keep_one_of_each(std::vector<GatherArrival>& arrivals) {
 GatherWalks::GatherWalks(const PreparedScene& scene, std::shared_ptr<const MirrorImages> images)
     : scene_(scene),
       tree_(scene),
-      lit_(scene, LightTreeDirect::Competition::none),
+      lit_(scene, LightTreeDirect::Options{LightTreeDirect::Competition::none}),
       images_(std::move(images)) {
   if (!images_) return;
   for (const MirrorImages::Image& image : images_->all())
-    lit_images_.emplace_back(*image.scene, LightTreeDirect::Competition::none);
+    lit_images_.emplace_back(*image.scene, LightTreeDirect::Options{LightTreeDirect::Competition::none});
 }
 
 void GatherWalks::follow(size_t rays, Coherence coherence, GatherScratch& s,

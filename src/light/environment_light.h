@@ -41,6 +41,10 @@ struct EnvironmentLight : NoSurface {
                                const Vec3& wi, float) {
     return p.directions ? p.directions->pdf(in_own_axes(scene.lights[p.light], wi)) : inv_pi_f / 4;
   }
+  static Vec2 square_of_direction(const Scene& scene, const LightPrimitive& p, const Vec3& wi) {
+    return p.directions ? p.directions->square_of(in_own_axes(scene.lights[p.light], wi))
+                        : square_from_sphere(wi);
+  }
   static Rgb radiance_at_infinity(const Scene& scene, const Light& e, const Vec3& wi) {
     if (e.environment == no_environment) return e.radiance;
     return e.radiance *

@@ -90,6 +90,16 @@ float pdf_solid_angle(const Scene& scene, const LightPrimitive& p, const Vec3& x
                   [&](auto kind) { return kind.pdf_solid_angle(scene, p, x, wi, distance); });
 }
 
+bool has_square_of_direction(const Scene& scene, const LightPrimitive& p) {
+  const LightKind kind = scene.lights[p.light].kind;
+  return p.portal == nullptr && (kind == LightKind::environment || kind == LightKind::sky);
+}
+
+Vec2 square_of_direction(const Scene& scene, const LightPrimitive& p, const Vec3& wi) {
+  return ask_kind(scene.lights[p.light].kind,
+                  [&](auto kind) { return kind.square_of_direction(scene, p, wi); });
+}
+
 Rgb emitted_radiance(const Scene& scene, const Light& light, bool is_front, const TexturePlace& uv,
                      const Vec3& towards) {
   return ask_kind(light.kind,

@@ -33,6 +33,12 @@ void sample_many(const Scene& scene, const LightPrimitives& all, size_t n,
 float pdf_solid_angle(const Scene& scene, const LightPrimitive& p, const Vec3& x, const Vec3& wi,
                       float distance);
 
+// True if samples of piece p have the directions of a fixed function of u, for all receivers.
+bool has_square_of_direction(const Scene& scene, const LightPrimitive& p);
+// Returns the u for which sample() gives the direction wi, for such a piece. Meaningful where its
+// density is not 0.
+Vec2 square_of_direction(const Scene& scene, const LightPrimitive& p, const Vec3& wi);
+
 // Radiance that leaves a light's surface in the unit direction `towards`, from its front or back,
 // at the texture coordinates uv.
 Rgb emitted_radiance(const Scene& scene, const Light& light, bool is_front, const TexturePlace& uv,

@@ -20,6 +20,7 @@ struct NoSurface {
                                float) {
     return 0;
   }
+  static Vec2 square_of_direction(const Scene&, const LightPrimitive&, const Vec3&) { return {}; }
   static Rgb radiance_at_infinity(const Scene&, const Light&, const Vec3&) { return Rgb{0}; }
   static std::unique_ptr<const DirectionTable> directions(const Scene&, const Light&) {
     return nullptr;

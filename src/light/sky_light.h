@@ -68,6 +68,9 @@ struct SkyLight : NoSurface {
                                const Vec3& wi, float) {
     return p.directions->pdf(in_own_axes(scene.lights[p.light], wi));
   }
+  static Vec2 square_of_direction(const Scene& scene, const LightPrimitive& p, const Vec3& wi) {
+    return p.directions->square_of(in_own_axes(scene.lights[p.light], wi));
+  }
   static Rgb radiance_at_infinity(const Scene&, const Light& e, const Vec3& wi) {
     const float up = dot(wi, e.axes[2]);
     if (!(up > 0)) return e.sky.ground;

@@ -36,6 +36,7 @@ struct SurfaceLight {
                                const Vec3& wi, float distance) {
     return troffer::pdf_solid_angle(p, x, wi, distance);
   }
+  static Vec2 square_of_direction(const Scene&, const LightPrimitive&, const Vec3&) { return {}; }
   static Rgb radiance_at_infinity(const Scene&, const Light&, const Vec3&) { return Rgb{0}; }
   static std::unique_ptr<const DirectionTable> directions(const Scene&, const Light&) {
     return nullptr;

@@ -118,7 +118,7 @@ std::unique_ptr<Integrator> make_paths(const MethodPlan& plan, const MethodInput
   options.depth = in.settings.depth;
   options.sampling = sampling_by_paths(*plan.forecast, error_by_paths(in.settings.error),
                                        most_by_paths(in.settings.most_viewing_rays));
-  options.light_samples = plan.forecast->light_samples;
+  options.lights = plan.forecast->lights;
   return std::make_unique<PathIntegrator>(in.scene, options);
 }
 
@@ -128,9 +128,10 @@ void tell_choice(const MethodInput& in, CellWay way, const PathForecast& cached,
   std::string reason =
       is_cached_possible
           ? fmt::format(
-                "they would take {:.3g} viewing rays per pixel with {} light samples each, "
+                "they would take {:.3g} viewing rays per pixel with {} light samples each{}, "
                 "and {:.3g} million rays",
-                cached.viewing_rays, cached.light_samples, cached.rays * 1e-6)
+                cached.viewing_rays, cached.lights.samples_at_first,
+                cached.lights.learned ? " of learned lights" : "", cached.rays * 1e-6)
           : fmt::format("they would take more than a quarter of {} viewing rays per pixel",
                         most_by_paths(in.settings.most_viewing_rays));
   if (trial.cost > 0)
@@ -201,8 +202,9 @@ std::unique_ptr<Integrator> make_by_cells(const MethodPlan& plan, const MethodIn
   to_cells.cells = cells;
   std::optional<PathForecast> cached;
   if (plan.may_end_paths_at_cells) {
-    cached = forecast(in, to_cells);
-    to_cells.light_samples = cached->light_samples;
+    std::shared_ptr<const LearnedLights> learned = plan.learned_lights;
+    cached = forecast(in, to_cells, learned);
+    to_cells.lights = cached->lights;
   }
   auto indirect = std::make_unique<CellsIndirect>(cells, nullptr);
   CellsIndirect& reflected = *indirect;

@@ -5,8 +5,12 @@
 #include <algorithm>
 
 #include "base/ablation.h"
+#include "base/random.h"
+#include "base/streams.h"
 #include "methods/methods.h"
 #include "methods/path.h"
+#include "transport/light_training.h"
+#include "transport/purposes.h"
 
 namespace troffer {
 
@@ -52,6 +56,21 @@ CertifiedSettings settings_of_further_direct(const MethodInput& in) {
       certified_settings(std::min(more * in.settings.error, 1.0), in.scene.scene.lights.size());
   s.draws = few_draws;
   return s;
+}
+
+// Returns the i-th batch of viewing rays for learning lights, anywhere in the picture.
+ViewingRays rays_to_learn_from(const PictureView& view, uint64_t seed, uint32_t i) {
+  constexpr uint32_t size = 256;
+  const uint64_t stream = hash_of(seed, stream::learned_lights);
+  const Vec2 extent{float(view.image.width()), float(view.image.height())};
+  ViewingRays rays;
+  for (uint32_t j = i * size; j < (i + 1) * size; ++j) {
+    const Vec2 at = SobolGroup(stream, purpose_camera, j).get2(0);
+    rays.rays.push_back(view.ray(at.x * extent.x, at.y * extent.y));
+    rays.streams.push_back(hash_of(stream, uint64_t{j}));
+    rays.samples.push_back(0);
+  }
+  return rays;
 }
 
 // True if paths may replace cells or gathers. They may not where indirect light was chosen
@@ -113,11 +132,20 @@ int most_by_paths(int asked) {
   return asked > 0 ? asked : most;
 }
 
-PathForecast forecast(const MethodInput& in, const PathOptions& options) {
-  return forecast_paths(paths_with_light_samples(in.scene, options), *in.cells->view,
+PathForecast forecast(const MethodInput& in, const PathOptions& options,
+                      std::shared_ptr<const LearnedLights>& learned) {
+  const PictureView& view = *in.cells->view;
+  const uint64_t seed = in.cells->seed;
+  LightsToLearn learn;
+  if (may_learn_lights(in.scene) && !is_left_out<"learned lights">())
+    learn = [&](double budget, Counters& counters) {
+      const auto batch = [&](uint32_t i) { return rays_to_learn_from(view, seed, i); };
+      if (!learned) learned = learn_lights(in.scene, batch, budget, in.settings.threads, counters);
+      return learned;
+    };
+  return forecast_paths(paths_by_light_sampling(in.scene, options), learn, view,
                         error_by_paths(in.settings.error),
-                        most_by_paths(in.settings.most_viewing_rays), in.cells->seed,
-                        in.cells->counters);
+                        most_by_paths(in.settings.most_viewing_rays), seed, in.cells->counters);
 }
 
 double error_beyond_first(const MethodInput& in) {
@@ -149,7 +177,7 @@ MethodPlan plan_certified(const MethodInput& in) {
   if (needs_cells(Method::certified, in.settings.indirect)) {
     plan.may_end_paths_at_cells = may_be_by_paths(in) && !is_left_out<"cached paths">();
     if (may_be_by_paths(in) && !is_left_out<"paths instead of cells">()) {
-      const PathForecast f = forecast(in, {});
+      const PathForecast f = forecast(in, {}, plan.learned_lights);
       if (f.is_within(most_by_paths(in.settings.most_viewing_rays))) plan.forecast = f;
     }
     if (plan.forecast && plan.forecast->rays_for_cells < 0) {

@@ -37,6 +37,8 @@ struct MethodPlan {
   std::vector<PlannedPart> parts;
   // Test of path tracing, where paths may replace cells.
   std::optional<PathForecast> forecast;
+  // Lights that a forecast has learned; null: none has.
+  std::shared_ptr<const LearnedLights> learned_lights;
   // True if paths that end at cells may replace gathers.
   bool may_end_paths_at_cells = false;
 
@@ -67,8 +69,10 @@ constexpr double error_by_paths(double asked) {
 // Returns the limit of viewing rays per pixel of a path-traced picture. asked: the user's limit; 0
 // if there is none.
 int most_by_paths(int asked);
-// Forecasts what the picture costs by paths with these options.
-PathForecast forecast(const MethodInput& in, const PathOptions& options);
+// Forecasts what the picture costs by paths with these options. learned: lights that an earlier
+// forecast has learned; set if this one learns them.
+PathForecast forecast(const MethodInput& in, const PathOptions& options,
+                      std::shared_ptr<const LearnedLights>& learned);
 
 // Returns the allowed error of direct light beyond the first surface: at cells, and at surfaces
 // that are seen in gloss. It is at least 0.1, because errors of many cells average out and gloss

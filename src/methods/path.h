@@ -19,6 +19,13 @@
 
 namespace troffer {
 
+// How paths sample lights. Unused where resampled_direct.h suits the scene.
+struct LightSampling {
+  uint32_t samples_at_first = 1;  // at the first surface that scatters; later ones take one
+  // Chooses lights by what arrives from them. Null: the light tree chooses.
+  std::shared_ptr<const LearnedLights> learned = nullptr;
+};
+
 struct PathOptions {
   int depth = -1;               // most scatterings (0: emission, 1: direct light); -1: no limit
   bool is_direct_only = false;  // only light scattered once, not counting mirrors and glass
@@ -32,9 +39,7 @@ struct PathOptions {
   // Cells at which paths end: the first matte reflection after a scattering reads the irradiance
   // there, if the ray is longer than a few cells. Null: paths end by roulette alone.
   std::shared_ptr<const Cells> cells = nullptr;
-  // Light samples at the first surface that scatters. Later ones take one. Unused where
-  // resampled_direct.h suits the scene.
-  uint32_t light_samples = 1;
+  LightSampling lights = {};
 };
 
 class PathIntegrator final : public Integrator {
@@ -42,13 +47,15 @@ class PathIntegrator final : public Integrator {
   PathIntegrator(const PreparedScene& scene, const PathOptions& options)
       : scene_(scene),
         options_(options),
-        tree_(scene, LightTreeDirect::Competition::all, options.light_samples) {
+        tree_(scene, {LightTreeDirect::Competition::all, options.lights.samples_at_first,
+                      options.lights.learned}) {
     if (ResampledDirect::suits(scene)) few_lights_.emplace(scene);
     if (!options_.images && !options_.is_direct_only)
       options_.images = MirrorImages::of_relays(scene);
     if (!options_.images) return;
     for (const MirrorImages::Image& image : options_.images->all())
-      lit_images_.emplace_back(*image.scene, LightTreeDirect::Competition::none);
+      lit_images_.emplace_back(*image.scene,
+                               LightTreeDirect::Options{LightTreeDirect::Competition::none});
   }
 
   std::unique_ptr<IntegratorScratch> make_scratch() const override;
@@ -83,11 +90,11 @@ class PathIntegrator final : public Integrator {
   std::vector<LightTreeDirect> lit_images_;    // one for each of options_.images
 };
 
-// Returns a function that makes path tracers with these options and a number of light samples.
-inline auto paths_with_light_samples(const PreparedScene& scene, const PathOptions& options) {
-  return [&scene, options](uint32_t light_samples) -> std::unique_ptr<Integrator> {
+// Returns a function that makes path tracers with these options and a way of sampling lights.
+inline auto paths_by_light_sampling(const PreparedScene& scene, const PathOptions& options) {
+  return [&scene, options](const LightSampling& lights) -> std::unique_ptr<Integrator> {
     PathOptions with = options;
-    with.light_samples = light_samples;
+    with.lights = lights;
     return std::make_unique<PathIntegrator>(scene, with);
   };
 }

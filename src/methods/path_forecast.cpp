@@ -32,6 +32,8 @@ constexpr int least_first = 8, most_first = 64;
 // Other numbers of light samples are tested only for pictures that cost this many times the test
 // paths. By judgement: the tests are then a small part of the work.
 constexpr double fewest_tests = 16;
+// Share of the picture's cost that learning lights may take. By judgement, likewise.
+constexpr double share_to_learn = 1.0 / 64;
 constexpr int tiles_across = 8;  // test pixels are grouped by 8 × 8 parts of the picture
 
 // Returns the place of test pixel i in the unit square that stands for the picture.
@@ -154,11 +156,11 @@ struct Tested {
   double cost = 0;  // of a path
 };
 
-Tested test_paths(const PathsToTest& paths, uint32_t light_samples, const ViewingRays& rays,
+Tested test_paths(const PathsToTest& paths, const LightSampling& lights, const ViewingRays& rays,
                   uint64_t stream, Counters& counters) {
   Counters own;
   Tested t;
-  t.tiles = tiles_of(stream, luminances(*paths(light_samples), rays, own));
+  t.tiles = tiles_of(stream, luminances(*paths(lights), rays, own));
   t.cost = cost_of(own) / double(rays.size());
   counters += own;
   return t;
@@ -187,34 +189,47 @@ uint32_t cheapest_light_samples(const PathTest& one, const PathTest& few) {
   return best;
 }
 
-PathForecast forecast_paths(const PathsToTest& paths, const PictureView& view, double error,
-                            int most, uint64_t seed, Counters& counters) {
+PathForecast forecast_paths(const PathsToTest& paths, const LightsToLearn& learn,
+                            const PictureView& view, double error, int most, uint64_t seed,
+                            Counters& counters) {
   const uint64_t stream = hash_of(seed, stream::path_forecast);
   const ViewingRays rays = sets_of_rays(view, stream);
   const double pixels = double(view.image.width()) * double(view.image.height());
-  const auto test = [&](uint32_t n) { return test_paths(paths, n, rays, stream, counters); };
-  const Tested one = test(1);
+  const auto test = [&](const LightSampling& l) {
+    return test_paths(paths, l, rays, stream, counters);
+  };
+  Tested one = test({});
   PathForecast least;
   least.typical = typical_of(one.tiles);
   // If so few paths see nothing in most of the picture, the forecast is infinite.
   least.viewing_rays = std::numeric_limits<double>::infinity();
   least.rays = std::numeric_limits<double>::infinity();
-  const auto consider = [&](const Tested& tested, uint32_t light_samples) {
+  const auto consider = [&](const Tested& tested, const LightSampling& lights) {
     PathForecast f;
     f.typical = least.typical;
-    f.light_samples = light_samples;
+    f.lights = lights;
     f.evenness = evenness_of(tested.tiles, error, f.typical);
     set_rays(tested.tiles, error, most, f);
     f.rays = tested.cost * f.viewing_rays * pixels;
-    if (f.rays < least.rays) least = f;
+    const bool is_less = f.rays < least.rays;
+    if (is_less) least = f;
+    return is_less;
   };
-  if (least.typical > 0) consider(one, 1);
+  if (least.typical > 0) consider(one, {});
   const double tested = one.cost * double(rays.size());
   if (least.rays > fewest_tests * tested && std::isfinite(least.rays)) {
-    const Tested few = test(few_light_samples);
+    if (learn) {
+      const LightSampling learned{1, learn(share_to_learn * least.rays, counters)};
+      Tested by_learned = test(learned);
+      if (consider(by_learned, learned)) one = std::move(by_learned);
+    }
+    LightSampling lights = least.lights;
+    lights.samples_at_first = few_light_samples;
+    const Tested few = test(lights);
     const uint32_t n = cheapest_light_samples(summed(one, error, least.typical),
                                               summed(few, error, least.typical));
-    if (n > 1) consider(n == few_light_samples ? few : test(n), n);
+    lights.samples_at_first = n;
+    if (n > 1) consider(n == few_light_samples ? few : test(lights), lights);
   }
   least.rays_for_cells = least.rays - least_of_pixel(error) * pixels - rays_of_search;
   return least;

@@ -18,12 +18,12 @@
 namespace troffer {
 
 struct PathForecast {
-  double viewing_rays = 0;     // mean per pixel for the asked error
-  double rays = 0;             // rays of all kinds, for the whole picture
-  double evenness = 0;         // of a pixel's paths (PixelSampling::evenness)
-  double proportion = 0;       // PixelSampling::proportion
-  double typical = 0;          // usual luminance of the picture (allowed_error.h)
-  uint32_t light_samples = 1;  // at first hits (PathOptions::light_samples)
+  double viewing_rays = 0;  // mean per pixel for the asked error
+  double rays = 0;          // rays of all kinds, for the whole picture
+  double evenness = 0;      // of a pixel's paths (PixelSampling::evenness)
+  double proportion = 0;    // PixelSampling::proportion
+  double typical = 0;       // usual luminance of the picture (allowed_error.h)
+  LightSampling lights;     // that costs least
   // Budget for making cells, in rays: `rays` minus the least cost of all other work of a picture by
   // cells. Negative: paths cost less even if cells are free.
   double rays_for_cells = 0;
@@ -32,14 +32,18 @@ struct PathForecast {
   bool is_within(int most) const { return 4 * viewing_rays <= most; }
 };
 
-// Returns the integrator whose viewing rays are tested, with so many light samples at first hits.
-using PathsToTest = std::function<std::unique_ptr<Integrator>(uint32_t light_samples)>;
+// Returns the integrator whose viewing rays are tested, with this way of sampling lights.
+using PathsToTest = std::function<std::unique_ptr<Integrator>(const LightSampling& lights)>;
+// Returns learned lights. budget: cost of the work (costs.h). Adds its rays to `counters`.
+using LightsToLearn =
+    std::function<std::shared_ptr<const LearnedLights>(double budget, Counters& counters)>;
 
-// Forecasts the cost of a picture with the number of light samples that costs least. error: allowed
-// in a pixel (allowed_error()). most: limit of viewing rays per pixel. Adds the rays that it traces
-// to `counters`.
-PathForecast forecast_paths(const PathsToTest& paths, const PictureView& view, double error,
-                            int most, uint64_t seed, Counters& counters);
+// Forecasts the cost of a picture with the way of sampling lights that costs least. learn: null if
+// lights cannot be learned. error: allowed in a pixel (allowed_error()). most: limit of viewing
+// rays per pixel. Adds the rays that it traces to `counters`.
+PathForecast forecast_paths(const PathsToTest& paths, const LightsToLearn& learn,
+                            const PictureView& view, double error, int most, uint64_t seed,
+                            Counters& counters);
 
 // Variance and cost of a path.
 struct PathTest {

@@ -161,6 +161,20 @@ LightChoice LightTree::choose(const Vec3& x, const Vec3& n, bool both_sides, flo
   return nodes_.empty() ? LightChoice{} : choose_below(0, x, n, both_sides, c.pmf, c.u);
 }
 
+float LightTree::chance_of_placed(const Vec3& x, const Vec3& n, bool both_sides) const {
+  if (nodes_.empty()) return 0;
+  alignas(16) Lanes weight;
+  importances(nodes_[0], x, n, both_sides, weight);
+  const bool may_light = (weight[0] + weight[1]) + (weight[2] + weight[3]) > 0;
+  return may_light ? 1 / weight_sum(x, n, both_sides) : 0;
+}
+
+LightChoice LightTree::choose_placed(const Vec3& x, const Vec3& n, bool both_sides,
+                                     float u) const {
+  const float chance = chance_of_placed(x, n, both_sides);
+  return chance > 0 ? choose_below(0, x, n, both_sides, chance, u) : LightChoice{};
+}
+
 // out[i] holds the probability and random number so far. Numbers increase, so each child takes a
 // contiguous run of them.
 void LightTree::choose_sorted_below(uint32_t at, const Vec3& x, const Vec3& n, bool both_sides,

@@ -74,6 +74,11 @@ class LightTree {
   // Probability with which choose() picks `primitive`, which must be one of the tree's.
   float pmf(const Vec3& x, const Vec3& n, bool both_sides, uint32_t primitive) const;
 
+  // Probability with which choose() picks a light that has a place, not one at infinity.
+  float chance_of_placed(const Vec3& x, const Vec3& n, bool both_sides) const;
+  // Chooses a light that has a place. The result has the pmf of choose(); 0: none can reach x.
+  LightChoice choose_placed(const Vec3& x, const Vec3& n, bool both_sides, float u) const;
+
   // Lists primitives whose bounding sphere is within `reach` metres of x, at most `most` of them;
   // never lights at infinity.
   void near(const Vec3& x, float reach, size_t most, std::vector<uint32_t>& out) const;

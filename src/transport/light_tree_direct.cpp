@@ -40,6 +40,23 @@ void LightTreeDirect::set_hits(const WaveHits& wave, LightTreeDirectScratch& s) 
                purpose_light(wave.walks[0].vertex), 3, s.numbers.data());
 }
 
+// Chooses a light for every receiver, and the numbers of the point on it.
+void LightTreeDirect::choose_points(LightTreeDirectScratch& s) const {
+  const LearnedLights* learned = options_.learned.get();
+  if (learned == nullptr) {
+    scene_.light_tree.choose_many(s.receivers, s.choices.data(), s.tree_scratch);
+    return;
+  }
+  const LightReceivers& r = s.receivers;
+  for (size_t k = 0; k < r.size(); ++k) {
+    const LearnedLights::Choice c = learned->choose(r.position(k), r.normal(k), r.sides[k] != 0,
+                                                    r.u[k], {s.picked_u[k], s.picked_v[k]});
+    s.choices[k] = c.light;
+    s.picked_u[k] = c.square.x;
+    s.picked_v[k] = c.square.y;
+  }
+}
+
 // Sets lit, primitives, points_lit, light_u, light_v and light_pmf for the samples that have a
 // light. Returns their number.
 size_t LightTreeDirect::choose_lights(const WaveHits& wave, LightTreeDirectScratch& s) const {
@@ -58,7 +75,7 @@ size_t LightTreeDirect::choose_lights(const WaveHits& wave, LightTreeDirectScrat
     s.lit[m++] = i;
   }
   s.receivers.resize(m);
-  scene_.light_tree.choose_many(s.receivers, s.choices.data(), s.tree_scratch);
+  choose_points(s);
   // Compacts the arrays to the samples that have a light.
   size_t kept = 0;
   for (size_t k = 0; k < m; ++k) {
@@ -76,7 +93,7 @@ size_t LightTreeDirect::choose_lights(const WaveHits& wave, LightTreeDirectScrat
 }
 
 bool LightTreeDirect::has_competition(const Bsdf& bsdf) const {
-  switch (competition_) {
+  switch (options_.competition) {
     case Competition::all:
       return true;
     case Competition::none:
@@ -124,16 +141,22 @@ void LightTreeDirect::weigh(SeenEmission& seen) const {
 }
 
 float LightTreeDirect::weight_of_miss(const Walk& walk, uint32_t primitive) const {
-  const float chance =
-      scene_.light_tree.pmf(walk.last_position, walk.last_normal, walk.last_both_sides, primitive);
+  const Vec3 x = walk.last_position, n = walk.last_normal;
+  const float chance = options_.learned == nullptr
+                           ? scene_.light_tree.pmf(x, n, walk.last_both_sides, primitive)
+                           : options_.learned->pmf_at_infinity(x, n, walk.last_both_sides,
+                                                               primitive, walk.ray.direction);
   return miss_weight(scene_, walk, primitive, chance * samples_before(walk));
 }
 
 float LightTreeDirect::weight_of(const Walk& walk, const Vertex& v) const {
   const int32_t primitive = primitive_at(scene_, v.surface);
-  return primitive < 0 ? 1
-                       : emission_weight(scene_, scene_.light_tree, walk, v, uint32_t(primitive),
-                                         samples_before(walk));
+  if (primitive < 0) return 1;
+  float samples = samples_before(walk);
+  if (options_.learned != nullptr)
+    samples *= options_.learned->factor_of_placed(walk.last_position, walk.last_normal,
+                                                  walk.last_both_sides);
+  return emission_weight(scene_, scene_.light_tree, walk, v, uint32_t(primitive), samples);
 }
 
 }  // namespace troffer

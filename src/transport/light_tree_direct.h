@@ -5,9 +5,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "light/light.h"
+#include "select/learned_lights.h"
 #include "select/light_tree.h"
 #include "transport/direct_light.h"
 
@@ -40,12 +43,17 @@ class LightTreeDirect final : public DirectLight {
   // Surfaces at which walks continue by BSDF sampling and count the emission that they hit: all but
   // Lambertian ones; all, as in path tracing; none. With none, shadow rays bring all light.
   enum class Competition { glossy, all, none };
-  // samples_at_first: light samples at the first surface that scatters, seen straight, in mirrors
-  // or through glass; other hits take one.
-  explicit LightTreeDirect(const PreparedScene& scene,
-                           Competition competition = Competition::glossy,
-                           uint32_t samples_at_first = 1)
-      : scene_(scene), competition_(competition), samples_at_first_(samples_at_first) {}
+  struct Options {
+    Competition competition = Competition::glossy;
+    // Light samples at the first surface that scatters, seen straight, in mirrors or through glass.
+    // Other hits take one.
+    uint32_t samples_at_first = 1;
+    // Chooses the lights instead of the tree. Null: the tree alone.
+    std::shared_ptr<const LearnedLights> learned = nullptr;
+  };
+  explicit LightTreeDirect(const PreparedScene& scene) : LightTreeDirect(scene, Options()) {}
+  LightTreeDirect(const PreparedScene& scene, Options options)
+      : scene_(scene), options_(std::move(options)) {}
 
   std::unique_ptr<DirectLightScratch> make_scratch() const override;
   WalkedPart walked_part() const override { return WalkedPart::whole; }
@@ -63,18 +71,18 @@ class LightTreeDirect final : public DirectLight {
   bool has_competition(const Bsdf& bsdf) const;
   // Returns the number of light samples at a hit from which a walk has scattered so many times.
   uint32_t samples_after(uint32_t scatterings) const {
-    return scatterings == 0 ? samples_at_first_ : 1;
+    return scatterings == 0 ? options_.samples_at_first : 1;
   }
   // The same for the hit that the walk has left.
   float samples_before(const Walk& walk) const {
     return float(samples_after(walk.scatterings - 1));
   }
   void set_hits(const WaveHits& wave, LightTreeDirectScratch& s) const;
+  void choose_points(LightTreeDirectScratch& s) const;
   size_t choose_lights(const WaveHits& wave, LightTreeDirectScratch& s) const;
 
   const PreparedScene& scene_;
-  Competition competition_;
-  uint32_t samples_at_first_;
+  Options options_;
 };
 
 }  // namespace troffer

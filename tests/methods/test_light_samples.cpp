@@ -52,7 +52,7 @@ Material coated_floor() {
 Moments seen(const PreparedScene& scene, const Vec3& x, uint32_t light_samples, uint32_t samples,
              int sets) {
   PathOptions o;
-  o.light_samples = light_samples;
+  o.lights.samples_at_first = light_samples;
   return probe(PathIntegrator(scene, o), ray_towards(eye, x), samples, sets).total;
 }
 

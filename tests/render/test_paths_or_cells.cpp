@@ -156,8 +156,8 @@ TEST_CASE("--indirect auto: cells are abandoned if they cost more than paths") {
   o.height = 120;
   o.error = 0.01;
   // Making cells begins,
-  REQUIRE(forecast_paths(paths_with_light_samples(scene, {}), view, 0.75 * o.error, 1 << 14, o.seed,
-                         counters)
+  REQUIRE(forecast_paths(paths_by_light_sampling(scene, {}), nullptr, view, 0.75 * o.error, 1 << 14,
+                         o.seed, counters)
               .rays_for_cells > 0);
   // but is given up.
   CHECK(render_now(scene, above, o).statistics.is_by_paths);
@@ -172,7 +172,8 @@ TEST_CASE("forecast of paths: the number of rays follows from the asked error an
                              return camera.ray({x, y}, {0.5f, 0.5f});
                            }};
     Counters counters;
-    return forecast_paths(paths_with_light_samples(scene, {}), view, error, most, 0, counters);
+    return forecast_paths(paths_by_light_sampling(scene, {}), nullptr, view, error, most, 0,
+                          counters);
   };
   const PathForecast coarse = forecast(160, 0.02, 1 << 30), fine = forecast(160, 0.01, 1 << 30);
   CHECK(coarse.evenness > 0.02);  // a path's random numbers are stratified within the pixel
