@@ -20,10 +20,10 @@ namespace troffer {
 
 namespace {
 
-constexpr uint64_t most_year_bytes = uint64_t(256) << 20;  // of a description
-constexpr uint64_t most_table_bytes = uint64_t(1) << 30;   // of metrics.csv
-constexpr size_t most_year_steps = size_t(366) * 24 * 60;  // a leap year by minutes
-constexpr size_t most_states = 1000;                       // of a group
+constexpr uint64_t most_year_bytes = uint64_t(256) << 20;   // of a description
+constexpr uint64_t most_metrics_bytes = uint64_t(1) << 30;  // of metrics.csv
+constexpr size_t most_year_steps = size_t(366) * 24 * 60;   // a leap year by minutes
+constexpr size_t most_states = 1000;                        // of a group
 constexpr size_t most_sensors = 10'000'000;
 
 JsonDocument read_year_json(const std::string& path) {
@@ -158,7 +158,7 @@ void read_stored_grid(const JsonNode& node, const std::string& arrays,
 
 // Reads the sensors of metrics.csv.
 void read_stored_points(const std::string& path, StoredYear& year) {
-  const std::string text = read_text_file(path, most_table_bytes);
+  const std::string text = read_text_file(path, most_metrics_bytes);
   CsvReader table(path, text);
   constexpr std::array<std::string_view, 6> names{"x", "y", "z", "nx", "ny", "nz"};
   const std::string expected = "the header of metrics.csv of troffer annual";

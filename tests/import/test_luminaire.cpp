@@ -246,7 +246,7 @@ TEST_CASE("photometric files that cannot be used are errors with a place") {
   CHECK_THROWS_AS(read_luminaire("/nonexistent/a.ies", warnings), InputError);
 }
 
-TEST_CASE("ten thousand mutated files load completely or fail as expected") {
+TEST_CASE("three thousand mutated files load completely or fail as expected") {
   const TempFolder folder;
   const std::string originals[] = {cosine_ies(),
                                    planes_ies({0, 30, 90}),
@@ -260,7 +260,7 @@ TEST_CASE("ten thousand mutated files load completely or fail as expected") {
   Random random(77);
   const auto below = [&](size_t n) { return size_t(random.next_u32()) % n; };
   int loaded = 0, refused = 0;
-  for (int i = 0; i < 10'000; ++i) {
+  for (int i = 0; i < 3000; ++i) {
     const size_t which = below(std::size(originals));
     std::string text = originals[which];
     for (size_t edits = 1 + below(6); edits > 0 && !text.empty(); --edits) {
@@ -283,8 +283,8 @@ TEST_CASE("ten thousand mutated files load completely or fail as expected") {
       ++refused;
     }
   }
-  CHECK(loaded > 500);
-  CHECK(refused > 500);
+  CHECK(loaded > 150);
+  CHECK(refused > 150);
 }
 
 TEST_CASE("a luminaire replaces a point or a flat mesh and nothing else") {

@@ -321,7 +321,7 @@ TEST_CASE("mutated files load or are refused") {
       "4'/><emitter type='area'><blackbody name='radiance' temperature='3000' scale='1e-3'/>"
       "</emitter></shape><emitter type='spot'><float name='cutoff_angle' value='30'/></emitter>"
       "<emitter type='sunsky'><vector name='sun_direction' x='1' y='1' z='0'/></emitter></scene>";
-  test::check_mutations(text, 3000, [&](const std::string& changed) {
+  test::check_mutations(text, 1500, [&](const std::string& changed) {
     import_mitsuba(folder.write("scene.xml", changed));
   });
 }

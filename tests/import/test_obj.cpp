@@ -346,7 +346,7 @@ TEST_CASE("damaged OBJ and MTL files load or fail cleanly") {
       "map_Kd -s 1 2 3 -o 0 0 -clamp on none.png\n";
   const TempFolder folder;
   Random random(5);
-  for (int round = 0; round < 1500; ++round) {
+  for (int round = 0; round < 1000; ++round) {
     std::string texts[2] = {obj, mtl};
     std::string& damaged = texts[round % 2];
     for (int e = 0; e < 2; ++e) {

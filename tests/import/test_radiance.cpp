@@ -240,12 +240,12 @@ TEST_CASE("mutated Radiance files load or are refused") {
   const auto import = [&](const std::string& changed) {
     import_radiance(folder.write("scene.rad", changed));
   };
-  test::check_mutations(text, 4000, import);
+  test::check_mutations(text, 1500, import);
   // Skies take time in proportion to their images, so there are fewer.
   const std::string sky =
       "void brightfunc sf 2 skybright skybright.cal 0 7 2 8 5 1 0 0 1\nsf glow sg 0 0 4 1 1 1 0\n"
       "sg source sky 0 0 4 0 0 1 180\n";
-  test::check_mutations(sky, 40, import);
+  test::check_mutations(sky, 20, import);
 }
 
 }  // namespace test_radiance

@@ -61,7 +61,8 @@ RenderOptions picture_by_cells() {
 }  // namespace
 
 TEST_CASE("cells: a closed cube lit by its ceiling keeps all light, for any reflectance") {
-  for (const float rho : {0.05f, 0.5f, 0.8f, 0.95f}) {
+  // A share that is lost at each bounce darkens the cube by rho/(1 - rho) times as much.
+  for (const float rho : {0.5f, 0.95f}) {
     Scene s;
     const auto walls = add_box_inside(s, add_diffuse(s, Rgb{rho}), {-1, -1, -1}, {1, 1, 1});
     make_light(s, walls[1], Rgb{1});
