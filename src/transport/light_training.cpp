@@ -20,7 +20,8 @@ namespace {
 // Light samples at the first surface that scatters, and at the second. Most paths take most of
 // their samples at the first.
 constexpr uint32_t samples_at_first = 16, samples_at_second = 4;
-constexpr uint32_t most_vertices = 8;  // of a path, with mirrors and glass on its way
+constexpr size_t most_at_infinity = 16;  // lights; more would make too many parts
+constexpr uint32_t most_vertices = 8;    // of a path, with mirrors and glass on its way
 // Limits the memory of observations to about 60 MB. Four times as many gain little.
 constexpr size_t most_batches = 256;
 
@@ -67,6 +68,7 @@ void add_sample(const PreparedScene& scene, const Vertex& v, bool both_sides,
     const float facing = both_sides ? std::abs(cosine) : std::max(cosine, 0.0f);
     o.light = luminance(s.radiance) * facing / (s.pdf_solid_angle * pmf);
   }
+  if (!std::isfinite(o.light)) o.light = 0;
   if (o.light > 0) out.rays.push_back(shadow_ray_to(v.surface, s));
   out.observations.push_back(o);
 }
@@ -126,8 +128,9 @@ Lesson learn_from(const PreparedScene& scene, const ViewingRays& rays) {
 
 bool may_learn_lights(const PreparedScene& scene) {
   const std::vector<uint32_t>& infinite = scene.primitives.at_infinity();
-  return !infinite.empty() && (scene.primitives.size() > 1 ||
-                               has_square_of_direction(scene.scene, scene.primitives[infinite[0]]));
+  return !infinite.empty() && infinite.size() <= most_at_infinity &&
+         (scene.primitives.size() > 1 ||
+          has_square_of_direction(scene.scene, scene.primitives[infinite[0]]));
 }
 
 std::shared_ptr<const LearnedLights> learn_lights(

@@ -10,8 +10,8 @@
 
 namespace troffer {
 
-// True if light samples may gain by learned lights: some light is at infinity and not alone, or it
-// is a sky whose directions can be told apart.
+// True if light samples may gain by learned lights: a few lights are at infinity, and one is not
+// alone or is a sky whose directions can be told apart.
 bool may_learn_lights(const PreparedScene& scene);
 
 // Returns the lights that paths from these viewing rays learn. batch: returns the viewing rays of

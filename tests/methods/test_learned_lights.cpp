@@ -203,6 +203,9 @@ TEST_CASE("lights are learned where it may help") {
   CHECK(may(add_sun_and_sky));
   CHECK(may([](Scene& s) { add_environment(s, Rgb{1}); }));
   CHECK_FALSE(may([](Scene& s) { add_distant(s, {0, 0, -1}, Rgb{1}); }));
+  CHECK_FALSE(may([](Scene& s) {
+    for (int i = 0; i < 17; ++i) add_environment(s, Rgb{1});
+  }));
   CHECK_FALSE(may([](Scene& s) { add_ceiling_light(s, 1, 2, Rgb{1}); }));
 }
 
