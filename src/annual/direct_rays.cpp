@@ -2,31 +2,13 @@
 
 #include <algorithm>
 
+#include "annual/sun_disc.h"
 #include "base/random.h"
 #include "base/streams.h"
 
 namespace troffer {
 
-namespace {
-
-// Strata per side of a patch: about one per 3 degrees, as patches have by default.
-size_t strata_per_side(const ReinhartSky& sky) {
-  constexpr size_t patches_by_default = 2305;  // ReinhartSky(4): AnnualOptions
-  size_t side = 1;
-  while (sky.size() * (side + 1) * (side + 1) <= patches_by_default + sky.size()) ++side;
-  return side;
-}
-
-// A point of the unit square in one of as many strata as there are replicates: for the sun, two
-// rings of four sectors. Of such divisions, edges of the disc pass this one unseen most seldom.
-Vec2 in_stratum(size_t stratum, const Vec2& number) {
-  constexpr size_t columns = 2, rows = 4;
-  static_assert(columns * rows == size_t(replicate_count));
-  return {(float(stratum % columns) + number.x) / float(columns),
-          (float(stratum / columns) + number.y) / float(rows)};
-}
-
-}  // namespace
+static_assert(sun_strata == size_t(replicate_count));
 
 DirectRays::DirectRays(const YearOutside& outside, const StateFamily& family, size_t sensor,
                        Parts parts)
@@ -34,7 +16,7 @@ DirectRays::DirectRays(const YearOutside& outside, const StateFamily& family, si
       family_(family),
       sensor_(sensor),
       place_(family.sensors[sensor]),
-      side_(strata_per_side(outside.skies.fine.sky)),
+      side_(outside.skies.fine.sky.strata_per_side()),
       of_region_(family.regions.size()) {
   if (parts == Parts::all) add_sky();
   first_of_ground_ = rays_.size();
@@ -69,8 +51,8 @@ void DirectRays::add_ground() {
 }
 
 // Rays to points of the sun's disc. All rays of an hour have the cosine of its middle. Each
-// replicate has another stratum of the disc, so that all rays miss an edge of the sun only where it
-// cuts off less than a stratum. A replicate's strata of different hours are independent.
+// replicate has another stratum of the disc. A replicate's strata of different hours are
+// independent.
 void DirectRays::add_sun() {
   Random random(hash_of(outside_.seed, uint64_t(sensor_), stream::annual_direct_sun));
   const YearSkies& skies = outside_.skies;
@@ -80,10 +62,7 @@ void DirectRays::add_sun() {
     const float cosine = dot(to_sun, place_.normal);
     if (cosine <= 0) continue;
     sun_hours_.push_back(h);
-    const size_t shift = random.next_u32() % replicate_count;
-    for (size_t r = 0; r < replicate_count; ++r)
-      add(within_sun(to_sun, in_stratum((r + shift) % replicate_count, random.next_vec2())),
-          cosine);
+    for (const Vec3& d : over_sun(to_sun, random)) add(d, cosine);
   }
 }
 
