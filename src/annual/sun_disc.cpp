@@ -18,13 +18,17 @@ Vec2 in_stratum(size_t stratum, const Vec2& number) {
           (float(stratum / columns) + number.y) / float(rows)};
 }
 
+// Returns the direction to a point of the disc, given in units of its radius.
+Vec3 at_point(const Frame& around_sun, const Vec2& point) {
+  const float radius = float(std::sin(rad_from_deg(sun_angular_radius_deg)));
+  const Vec2 disc = point * radius;
+  return around_sun.to_world({disc.x, disc.y, std::sqrt(1 - dot(disc, disc))});
+}
+
 }  // namespace
 
 Vec3 within_sun(const Vec3& to_sun, const Vec2& number) {
-  const float radius = float(std::sin(rad_from_deg(sun_angular_radius_deg)));
-  const Vec2 disc = disk_from_square(number) * radius;
-  const float up = std::sqrt(1 - dot(disc, disc));
-  return Frame(to_sun).to_world({disc.x, disc.y, up});
+  return at_point(Frame(to_sun), disk_from_square(number));
 }
 
 std::array<Vec3, sun_strata> over_sun(const Vec3& to_sun, Random& random) {
@@ -32,6 +36,17 @@ std::array<Vec3, sun_strata> over_sun(const Vec3& to_sun, Random& random) {
   const size_t first = random.next_u32() % sun_strata;
   for (size_t i = 0; i < sun_strata; ++i)
     out[i] = within_sun(to_sun, in_stratum((first + i) % sun_strata, random.next_vec2()));
+  return out;
+}
+
+std::array<Vec3, rim_points> rim_of_sun(const Vec3& to_sun, Random& random) {
+  const Frame around_sun(to_sun);
+  const float first = random.next_float();
+  std::array<Vec3, rim_points> out;
+  for (size_t i = 0; i < rim_points; ++i) {
+    const float angle = 2 * pi_f * (float(i) + first) / float(rim_points);
+    out[i] = at_point(around_sun, {std::cos(angle), std::sin(angle)});
+  }
   return out;
 }
 

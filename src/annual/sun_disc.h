@@ -21,4 +21,10 @@ constexpr size_t sun_strata = 8;
 // miss an edge only where it cuts off less than a stratum.
 std::array<Vec3, sun_strata> over_sun(const Vec3& to_sun, Random& random);
 
+// Returns directions to the disc's rim, evenly spaced, the first one at a random angle. Of the
+// straight edges that cross the disc, all of them miss only those that cut off less than 1.3 %:
+// (2 pi / n - sin(2 pi / n)) / 2 pi with n = 8 directions.
+constexpr size_t rim_points = 8;
+std::array<Vec3, rim_points> rim_of_sun(const Vec3& to_sun, Random& random);
+
 }  // namespace troffer
