@@ -9,22 +9,11 @@ namespace troffer {
 
 namespace {
 
-// Strata per side of a patch: about one per 3 degrees, as patches have by default.
-size_t strata_per_side(const ReinhartSky& sky) {
-  constexpr size_t patches_by_default = 2305;  // ReinhartSky(4): AnnualOptions
-  size_t side = 1;
-  while (sky.size() * (side + 1) * (side + 1) <= patches_by_default + sky.size()) ++side;
-  return side;
-}
+static_assert(sun_strata == size_t(replicate_count));
 
-// A point of the unit square in one of as many strata as there are replicates: for the sun, two
-// rings of four sectors. Of such divisions, edges of the disc pass this one unseen most seldom.
-Vec2 in_stratum(size_t stratum, const Vec2& number) {
-  constexpr size_t columns = 2, rows = 4;
-  static_assert(columns * rows == size_t(replicate_count));
-  return {(float(stratum % columns) + number.x) / float(columns),
-          (float(stratum / columns) + number.y) / float(rows)};
-}
+// Rays to the rim of the sun disagree if one brings less than this share of another one. Panes
+// alone make less of a difference across half a degree, but at grazing angles.
+constexpr float like_others = 0.95f;
 
 }  // namespace
 
@@ -34,7 +23,7 @@ DirectRays::DirectRays(const YearOutside& outside, const StateFamily& family, si
       family_(family),
       sensor_(sensor),
       place_(family.sensors[sensor]),
-      side_(strata_per_side(outside.skies.fine.sky)),
+      side_(outside.skies.fine.sky.strata_per_side()),
       of_region_(family.regions.size()) {
   if (parts == Parts::all) add_sky();
   first_of_ground_ = rays_.size();
@@ -68,22 +57,23 @@ void DirectRays::add_ground() {
     }
 }
 
-// Rays to points of the sun's disc. All rays of an hour have the cosine of its middle. Each
-// replicate has another stratum of the disc, so that all rays miss an edge of the sun only where it
-// cuts off less than a stratum. A replicate's strata of different hours are independent.
+Vec3 DirectRays::to_sun(uint32_t hour) const {
+  return outside_.world(direction_of(outside_.year.steps[outside_.skies.steps[hour]].sun));
+}
+
+// Rays to points of the sun's disc, then to its rim. All of an hour have the cosine of its middle.
+// Each replicate has another stratum of the disc. Its strata of different hours are independent.
 void DirectRays::add_sun() {
   Random random(hash_of(outside_.seed, uint64_t(sensor_), stream::annual_direct_sun));
   const YearSkies& skies = outside_.skies;
   for (uint32_t h = 0; h < skies.hours(); ++h) {
     if (skies.sun_lx[h] == 0) continue;
-    const Vec3 to_sun = outside_.world(direction_of(outside_.year.steps[skies.steps[h]].sun));
-    const float cosine = dot(to_sun, place_.normal);
+    const Vec3 sun = to_sun(h);
+    const float cosine = dot(sun, place_.normal);
     if (cosine <= 0) continue;
     sun_hours_.push_back(h);
-    const size_t shift = random.next_u32() % replicate_count;
-    for (size_t r = 0; r < replicate_count; ++r)
-      add(within_sun(to_sun, in_stratum((r + shift) % replicate_count, random.next_vec2())),
-          cosine);
+    for (const Vec3& d : over_sun(sun, random)) add(d, cosine);
+    for (const Vec3& d : rim_of_sun(sun, random)) add(d, cosine);
   }
 }
 
@@ -119,8 +109,37 @@ std::vector<float> DirectRays::open_in(const StateOfFamily& state,
     rays.trace();
     for (size_t k = 0; k < crossing.size(); ++k) open[crossing[k]] = luminance(rays[k]);
   }
+  find_sun(state.scene->tracer, open);
   for (size_t i = 0; i < fixed.size(); ++i) open[i] -= fixed[i];
   return open;
+}
+
+// Replaces the values of rays to the sun by one of each hour and replicate. Rays to the rim decide
+// whether a replicate gets more rays to the disc, which then replace its only one. As they decide
+// nothing else, its value is unbiased.
+void DirectRays::find_sun(const Tracer& tracer, std::vector<float>& open) const {
+  OpenRays rays(tracer);
+  for (size_t i = 0; i < sun_hours_.size(); ++i) {
+    const float* of_hour = open.data() + first_of_sun_ + i * rays_of_sun;
+    float* out = open.data() + first_of_sun_ + i * sun_strata;
+    const auto [least, most] = std::minmax_element(of_hour + sun_strata, of_hour + rays_of_sun);
+    const bool has_edge = *least < like_others * *most;
+    std::copy_n(of_hour, sun_strata, out);
+    if (!has_edge) continue;
+    const Vec3 sun = to_sun(sun_hours_[i]);
+    Random random(hash_of(outside_.seed, uint64_t(sensor_), uint64_t(sun_hours_[i]),
+                          stream::annual_direct_sun));
+    rays.clear();
+    for (size_t r = 0; r < size_t(replicate_count); ++r)
+      for (const Vec3& d : over_sun(sun, random)) rays.add(place_, d);
+    rays.trace();
+    for (size_t r = 0; r < size_t(replicate_count); ++r) {
+      float sum = 0;
+      for (size_t k = 0; k < sun_strata; ++k) sum += luminance(rays[r * sun_strata + k]);
+      out[r] = sum / float(sun_strata);
+    }
+  }
+  open.resize(first_of_sun_ + sun_hours_.size() * sun_strata);
 }
 
 std::vector<SunHour> DirectRays::sun_in(const StateOfFamily& state,
@@ -128,10 +147,10 @@ std::vector<SunHour> DirectRays::sun_in(const StateOfFamily& state,
   const std::vector<float> open = open_in(state, fixed);
   std::vector<SunHour> hours;
   for (size_t i = 0; i < sun_hours_.size(); ++i) {
-    const size_t ray = first_of_sun_ + i * replicate_count;
-    const float lx = outside_.skies.sun_lx[sun_hours_[i]] * cosine(ray);
+    const float lx = outside_.skies.sun_lx[sun_hours_[i]] * sun_cosine(i);
     float sum = 0;
-    for (size_t r = 0; r < replicate_count; ++r) sum += lx * open[ray + r];
+    for (size_t r = 0; r < replicate_count; ++r)
+      sum += lx * open[first_of_sun_ + i * replicate_count + r];
     if (sum != 0) hours.push_back({sun_hours_[i], sum / float(replicate_count)});
   }
   return hours;

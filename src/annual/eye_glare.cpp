@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "annual/open_rays.h"
+#include "annual/sun_disc.h"
 #include "base/random.h"
 #include "base/streams.h"
 #include "base/units.h"
@@ -16,7 +17,7 @@ namespace troffer {
 namespace {
 
 constexpr double source_luminance = 2000;  // cd/m², as `troffer glare`
-constexpr size_t eye_rays = 8;             // to a patch, and to the sun's disc
+constexpr size_t eye_rays = 8;             // to a patch
 // Strata of the view: Reinhart's subdivision around the line of sight.
 constexpr int view_subdivision = 3;
 
@@ -114,8 +115,7 @@ class EyeCalculation {
       const double weight = weight_of(to_sun);
       if (weight == 0) continue;
       rays_.clear();
-      for (size_t i = 0; i < eye_rays; ++i)
-        rays_.add(place_, within_sun(to_sun, random.next_vec2()));
+      for (const Vec3& d : over_sun(to_sun, random)) rays_.add(place_, d);
       const OpenShare open = trace();
       const double disc = disc_solid_angle();
       if (open.share > 0) add(h, lx * open.transmittance / disc, disc * open.share, weight);

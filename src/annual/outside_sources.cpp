@@ -5,9 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include "base/frame.h"
+#include "annual/sun_disc.h"
 #include "base/units.h"
-#include "base/warp.h"
 #include "daylight/sky_model.h"
 
 namespace troffer {
@@ -78,13 +77,6 @@ DrawnSources::DrawnSources(const OutsideSources& sources, std::span<const uint32
     for (size_t k = 0; k < drawings; ++k) sources.draw(number, samples, random, samples_);
     begin_.push_back(samples_.size());
   }
-}
-
-Vec3 within_sun(const Vec3& to_sun, const Vec2& number) {
-  const float radius = float(std::sin(rad_from_deg(sun_angular_radius_deg)));
-  const Vec2 disc = disk_from_square(number) * radius;
-  const float up = std::sqrt(1 - dot(disc, disc));
-  return Frame(to_sun).to_world({disc.x, disc.y, up});
 }
 
 }  // namespace troffer

@@ -72,7 +72,4 @@ class DrawnSources {
   std::vector<OutsideSample> samples_;
 };
 
-// Returns a direction within the sun's disc around a unit direction.
-Vec3 within_sun(const Vec3& to_sun, const Vec2& number);
-
 }  // namespace troffer

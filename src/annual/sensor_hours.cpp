@@ -102,13 +102,14 @@ void SensorHours::add_ground(const DirectRays& rays, std::span<const float> open
 }
 
 void SensorHours::add_sun(const DirectRays& rays, std::span<const float> open) {
-  size_t ray = rays.first_of_sun();
-  for (const uint32_t h : rays.sun_hours()) {
+  size_t at = rays.first_of_sun();
+  for (size_t i = 0; i < rays.sun_hours().size(); ++i) {
+    const uint32_t h = rays.sun_hours()[i];
     SunTerm sun{h, {}};
-    const float lx = light_.outside.skies.sun_lx[h] * rays.cosine(ray);
+    const float lx = light_.outside.skies.sun_lx[h] * rays.sun_cosine(i);
     bool is_lit = false;
-    for (size_t r = 0; r < replicate_count; ++r, ++ray) {
-      sun.lx[r] = lx * open[ray];
+    for (size_t r = 0; r < replicate_count; ++r, ++at) {
+      sun.lx[r] = lx * open[at];
       is_lit = is_lit || sun.lx[r] != 0;
     }
     if (is_lit) suns_.push_back(sun);

@@ -10,15 +10,6 @@
 
 namespace troffer {
 
-namespace {
-
-// Points per side of a patch at which its luminance is taken: about one per 3 degrees.
-int points_of(int subdivision) {
-  return std::max(1, 4 / subdivision);
-}
-
-}  // namespace
-
 YearSkies make_year_skies(const WeatherYear& year, int subdivision, double ground_reflectance,
                           int threads) {
   YearSkies out{
@@ -36,13 +27,12 @@ YearSkies make_year_skies(const WeatherYear& year, int subdivision, double groun
         perez_sky(step.direct_normal, step.diffuse_horizontal, zenith, step.sun.distance_au);
     const Vec3d to_sun = direction_of(step.sun);
     std::vector<float> luminances(std::max(out.fine.sky.size(), out.coarse.sky.size()));
-    const auto fill = [&](PatchHours& hours, int points) {
-      patch_luminances(hours.sky, sky.shape, to_sun, sky.diffuse_lx, points,
-                       std::span(luminances).first(hours.sky.size()));
-      for (size_t p = 0; p < hours.sky.size(); ++p) hours.luminance[p * n + h] = luminances[p];
-    };
-    fill(out.coarse, points_of(reflected_subdivision));
-    fill(out.fine, points_of(subdivision));
+    for (PatchHours* hours : {&out.coarse, &out.fine}) {
+      patch_luminances(hours->sky, sky.shape, to_sun, sky.diffuse_lx,
+                       int(hours->sky.strata_per_side()),
+                       std::span(luminances).first(hours->sky.size()));
+      for (size_t p = 0; p < hours->sky.size(); ++p) hours->luminance[p * n + h] = luminances[p];
+    }
     if (has_sunshine(step)) out.sun_lx[h] = float(sky.direct_lx);
     out.diffuse_lx[h] = float(sky.diffuse_lx);
     const double global = sky.diffuse_lx + double(out.sun_lx[h]) * to_sun.z;

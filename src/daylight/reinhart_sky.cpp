@@ -29,7 +29,7 @@ Vec3d ReinhartPatch::centre() const {
           std::sin(altitude)};
 }
 
-ReinhartSky::ReinhartSky(int subdivision) {
+ReinhartSky::ReinhartSky(int subdivision) : strata_per_side_(size_t(std::max(1, 4 / subdivision))) {
   const int rows = int(patches_of_rows.size()) * subdivision;
   step_ = pi / 2 / (rows + 0.5);
   const auto add = [&](double low, double high, double left, double right) {

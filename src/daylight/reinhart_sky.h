@@ -41,6 +41,8 @@ class ReinhartSky {
   // without its ground patch [3].
   const std::vector<ReinhartPatch>& patches() const { return patches_; }
   size_t size() const { return patches_.size(); }
+  // Strata per side of a patch that are about 3 degrees wide, as patches of subdivision 4 are.
+  size_t strata_per_side() const { return strata_per_side_; }
   // Returns the patch that holds a direction above the horizon, or the one below which it lies.
   size_t at(const Vec3d& direction) const;
 
@@ -48,6 +50,7 @@ class ReinhartSky {
   struct PatchRow {
     size_t first = 0, count = 0;
   };
+  size_t strata_per_side_;
   double step_ = 0;  // altitude of a row
   std::vector<PatchRow> rows_;
   std::vector<ReinhartPatch> patches_;
