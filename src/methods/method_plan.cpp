@@ -60,7 +60,7 @@ CertifiedSettings settings_of_further_direct(const MethodInput& in) {
 
 // Returns the i-th batch of viewing rays for learning lights, anywhere in the picture.
 ViewingRays rays_to_learn_from(const PictureView& view, uint64_t seed, uint32_t i) {
-  constexpr uint32_t size = 256;
+  constexpr uint32_t size = 256;  // as many as PathIntegrator follows at a time
   const uint64_t stream = hash_of(seed, stream::learned_lights);
   const Vec2 extent{float(view.image.width()), float(view.image.height())};
   ViewingRays rays;

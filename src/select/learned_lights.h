@@ -24,7 +24,7 @@
 
 namespace troffer {
 
-// What one test sample found.
+// A test sample of a light, and how much light it brought.
 struct LightObservation {
   Vec3 position, normal;   // of the receiver; unit normal
   uint32_t primitive = 0;  // the light, and the numbers of the point on it

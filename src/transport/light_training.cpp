@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "base/parallel.h"
 #include "base/random.h"
@@ -21,7 +20,9 @@ namespace {
 // their samples at the first.
 constexpr uint32_t samples_at_first = 16, samples_at_second = 4;
 constexpr size_t most_at_infinity = 16;  // lights; more would make too many parts
-constexpr uint32_t most_vertices = 8;    // of a path, with mirrors and glass on its way
+// Vertices of a path, with mirrors and glass on its way. By judgement: two panes with two sides
+// each leave four.
+constexpr uint32_t most_vertices = 8;
 // Limits the memory of observations to about 60 MB. Four times as many gain little.
 constexpr size_t most_batches = 256;
 
